@@ -10,9 +10,9 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/mesh_on_ranks.h"
+#include "distributed/collective_errors.h"
 #include "distributed/mpi_communication.h"
 #include "distributed/rank_failure.h"
-#include "distributed/together.h"
 
 namespace {
 
@@ -44,15 +44,15 @@ podm::cli::Command parse(int argc, char** argv, const podm::Communication& ranks
   auto command = podm::cli::parse_command_line({argv + 1, argv + argc}, podm::cli::Program::kPodmMpi);
   const auto* mesh = std::get_if<podm::cli::MeshCommand>(&command);
   if (mesh != nullptr && mesh->ranks_in_process > 0 && ranks.size() > 1)
-    throw podm::InputError(fmt::format(
-        "--in-process: MPI has started {} processes, and one is to have all ranks", ranks.size()));
+    throw podm::InputError(
+        fmt::format("--in-process: MPI has started {} processes; ranks in process need one", ranks.size()));
   return command;
 }
 
 int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThread& signals) {
   namespace cli = podm::cli;
   cli::Command command;
-  podm::do_together([&] { command = parse(argc, argv, ranks); }, ranks);
+  podm::do_collectively([&] { command = parse(argc, argv, ranks); }, ranks);
   const bool is_mesh = std::holds_alternative<cli::MeshCommand>(command);
   podm::expect_agreement({{"command", is_mesh ? "mesh" : "a text to show"}}, ranks);
   if (const auto* text = std::get_if<cli::ShowText>(&command)) return ranks.rank() == 0 ? cli::run(*text) : 0;

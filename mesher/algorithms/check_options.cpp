@@ -38,12 +38,12 @@ void check_size_image(const SizeImage& image) {
   std::size_t voxels = 1;
   for (const int n : image.size) voxels *= static_cast<std::size_t>(std::max(n, 0));
   if (voxels == 0 || voxels != image.radius_mm.size())
-    throw InputError(image.path + ": the size image has not as many radii as voxels");
+    throw InputError(image.path + ": the numbers of radii and voxels of the size image differ");
   if (!(std::abs(determinant(image.voxel_to_ras)) > 0))
     throw InputError(image.path + ": the affine is singular");
   for (const float radius : image.radius_mm)
     if (!is_positive_or_zero(radius))
-      throw InputError(image.path + ": radii must be finite, and not negative");
+      throw InputError(image.path + ": radii must be finite and not negative");
 }
 
 void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
@@ -64,8 +64,8 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
 void check_crossover(const MeshingOptions& options) {
   const Algorithm algorithm = options.algorithm;
   if (options.crossover > 0 && algorithm != Algorithm::kPdrPodm && algorithm != Algorithm::kAuto)
-    throw InputError(
-        fmt::format("crossover: algorithm {} has none; pdr-podm and auto have", to_string(algorithm)));
+    throw InputError(fmt::format("crossover: algorithm {} has no crossover; only pdr-podm and auto have one",
+                                 to_string(algorithm)));
   if (options.crossover > 0 && options.leaves.with_schedule)
     throw InputError("crossover and schedule exclude each other: below the crossover there are no leaves");
 }
@@ -87,9 +87,10 @@ void check_optimization(const MeshingOptions& options) {
   const auto [least, largest] = optimize.dihedral_bounds_deg;
   if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
     throw InputError(
-        "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
+        "the least dihedral angle must be above 0 and at most 15, the largest at least 150 and below 180");
   if (options.log != nullptr)
-    throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
+    throw InputError(
+        "an optimised mesh has no log of operations: the operations of optimisation are not logged");
 }
 
 // Readers of files ensure this; other callers may have left the affine out.
@@ -98,10 +99,11 @@ void check_affine(const LabelImage& image) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double norm = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
     if (!(norm > 0 && std::abs(norm - image.spacing[axis]) <= 1e-6 * norm))
-      throw InputError("the image's spacing is not that of its affine (axis " + std::to_string(axis) + ")");
+      throw InputError("the spacing of the image differs from that of its affine (axis " +
+                       std::to_string(axis) + ")");
   }
   const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
-  if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the image's affine is singular");
+  if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the affine of the image is singular");
 }
 
 }  // namespace

@@ -33,9 +33,9 @@ Construction::Entries Construction::all_cells() const {
   return cells;
 }
 
-void Construction::withhold(std::uint64_t bytes) {
+void Construction::reduce_capacity(std::uint64_t bytes) {
   const std::uint64_t cells = (bytes + kBytesPerStoredCell - 1) / kBytesPerStoredCell;
-  if (!result_.mesh->withhold(cells)) stop_.end(StopReason::kMemoryLimit);
+  if (!result_.mesh->reduce_capacity(cells)) stop_.end(StopReason::kMemoryLimit);
 }
 
 std::vector<Place> Construction::places_of_first(std::size_t count) const {
@@ -77,7 +77,7 @@ void Construction::log(const Relocation& relocation) {
 // Distinguishes a store without memory from one without cell numbers, which may have memory left.
 Refinement Construction::finish() {
   result_.stop_reason = stop_.reason();
-  if (result_.stop_reason == StopReason::kMemoryLimit && mesh().is_used_up() &&
+  if (result_.stop_reason == StopReason::kMemoryLimit && mesh().is_exhausted() &&
       problem_.cell_capacity >= problem_.most_numbered_cells)
     result_.stop_reason = StopReason::kNumberLimit;
   result_.counters = sum_of(result_.workers);

@@ -82,7 +82,7 @@ struct Refinement {
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
-  std::optional<Perturbed> perturbed;
+  std::optional<PerturbationReport> perturbation;
 };
 
 /// The phase that prepares store, pools, workers and threads.
@@ -108,9 +108,9 @@ class Construction {
   /// Every cell of the store.
   Entries all_cells() const;
 
-  /// Keeps `bytes` of memory free of the store, instead of the amount withheld before. Ends the run if the
+  /// Keeps `bytes` of memory free of the store, instead of the amount kept before. Ends the run if the
   /// store already uses them.
-  void withhold(std::uint64_t bytes);
+  void reduce_capacity(std::uint64_t bytes);
   /// Makes the first `num_workers` workers of the team, with their pools. The workers keep a reference to the
   /// parameters. The time is charged to `phase`.
   template <class Locks>
@@ -197,7 +197,7 @@ class Construction {
     result_.num_leaves = num_leaves;
     result_.schedule = std::move(schedule);
   }
-  void report(const Perturbed& perturbed) { result_.perturbed = perturbed; }
+  void report(const PerturbationReport& perturbation) { result_.perturbation = perturbation; }
   Refinement finish();
 
  private:

@@ -72,7 +72,7 @@ struct Leaves {
   bool hand_over(ComputingNode<Locks>& node) {
     if (node.num_foreign() < kForeignToShare * node.num_workers()) return true;
     node.set_hands_over(true);
-    node.group().rouse(node.master().id());
+    node.group().wake_beggars(node.master().id());
     const bool is_done = refine_leaf(node, node.master());
     node.set_hands_over(false);
     return is_done;

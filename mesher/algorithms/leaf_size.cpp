@@ -124,13 +124,14 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
   const double most_bytes = kMostMemoryOfLeaves * static_cast<double>(problem.memory_bytes);
   const double most = std::min(kMostLeaves, most_bytes / kMostBytesPerLeaf);
   if (leaves <= most) return static_cast<std::uint64_t>(leaves * kMostBytesPerLeaf);
-  const std::string told = fmt::format("a leaf size of {:g} mm makes {:.2g} leaves", asked_mm, leaves);
+  const std::string fault = fmt::format("a leaf size of {:g} mm gives {:.2g} leaves", asked_mm, leaves);
   const double enough_mm = 1.1 * asked_mm * std::cbrt(leaves / most);
   if (leaves > kMostLeaves)
-    throw InputError(fmt::format("{}, the most are {}; {:.3g} mm makes fewer", told, kMostLeaves, enough_mm));
+    throw InputError(fmt::format("{}, but at most {} are supported; {:.3g} mm gives fewer", fault,
+                                 kMostLeaves, enough_mm));
   throw InputError(fmt::format(
-      "{}, which take {:.3g} GiB; of the memory limit leaves may have {:.3g} GiB; {:.3g} mm makes fewer",
-      told, leaves * kMostBytesPerLeaf / kBytesPerGib, most_bytes / kBytesPerGib, enough_mm));
+      "{}, which take {:.3g} GiB; leaves may take {:.3g} GiB of the memory limit; {:.3g} mm gives fewer",
+      fault, leaves * kMostBytesPerLeaf / kBytesPerGib, most_bytes / kBytesPerGib, enough_mm));
 }
 
 // Leaves are as large as possible while each node finds enough leaves beyond two rings of all active leaves.

@@ -3,7 +3,7 @@
 #include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/perturb.h"
+#include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
 #include "workers/work_cost.h"
 
@@ -39,7 +39,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   const std::uint64_t bytes_of_leaves = checked_bytes_of_leaves(problem, options, levels.clamp);
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
-  construction.withhold(bytes_of_leaves);
+  construction.reduce_capacity(bytes_of_leaves);
   refine_anywhere(construction, "initial", levels.initial, construction.all_cells(),
                   team.initial_workers);  // 4
   if (stop.is_over()) return ended_early(construction);
@@ -49,10 +49,10 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
                          stop.over());
   });
   construction.charge_virtual("octree", &TimeCosts::cube_made, octree->num_cubes());
-  construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
+  construction.reduce_capacity(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());
-  perturb(construction, levels.final);
+  perturb_mesh(construction, levels.final);
   return construction.finish();  // 30
 }
 

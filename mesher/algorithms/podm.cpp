@@ -6,7 +6,7 @@
 
 #include "algorithms/leaf_locks.h"
 #include "algorithms/leaf_size.h"
-#include "algorithms/perturb.h"
+#include "algorithms/perturb_mesh.h"
 #include "algorithms/podm_loop.h"
 #include "refine/virtual_box.h"
 
@@ -76,7 +76,7 @@ Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   Construction construction(problem, clamp, team, stop);
   const Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers());
-  perturb(construction, parameters);
+  perturb_mesh(construction, parameters);
   return construction.finish();
 }
 

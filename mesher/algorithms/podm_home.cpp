@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "algorithms/leaf_size.h"
-#include "algorithms/perturb.h"
+#include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
 #include "geometry/spread_point.h"
 #include "refine/virtual_box.h"
@@ -53,7 +53,7 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
   const Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);
-  perturb(construction, parameters);
+  perturb_mesh(construction, parameters);
   return construction.finish();
 }
 

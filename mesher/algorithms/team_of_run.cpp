@@ -60,8 +60,8 @@ void TeamOfRun::report_to(MeshingReport& report, PageSamples pages) const {
 
 std::string TeamOfRun::why_no_pages() const {
   if (placement_.machine.num_nodes() == 1) return "the machine has one NUMA node";
-  if (placement_.machine.is_this_machine()) return "workers of virtual time are on no node";
-  return "the machine is a described one";
+  if (placement_.machine.is_this_machine()) return "workers in virtual time are on no node";
+  return "the machine is described by a file";
 }
 
 }  // namespace podm

@@ -60,11 +60,11 @@ int loop_threads(const TeamOptions& options) {
 void check_team_size(const TeamOptions& options, Algorithm algorithm) {
   const int nodes = options.nodes, cores = options.cores_per_node, threads = options.threads;
   if (nodes > 0 && cores > 0 && threads > 0 && nodes * cores != threads)
-    throw InputError("threads must be nodes times cores per node, or left out");
+    throw InputError("the number of threads must equal nodes times cores per node, or be omitted");
   if ((nodes > 0 && threads % nodes != 0) || (cores > 0 && threads % cores != 0))
-    throw InputError("nodes must divide the threads evenly");
+    throw InputError("nodes and cores per node must divide the number of threads");
   if (algorithm == Algorithm::kPdr && cores > 1)
-    throw InputError("pdr has one core per node; pdr-podm has more");
+    throw InputError("pdr has one core per node; use pdr-podm for more");
   if (options.initial_threads > num_workers(options))
     throw InputError("the initial mesh cannot have more threads than the whole run");
 }

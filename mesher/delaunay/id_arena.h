@@ -30,10 +30,10 @@ class IdArena {
   /// Returns the number of ids that each of `num_workers` workers should take at once. Unused ids in blocks
   /// are then at most 1/32 of all, unless the minimum block size applies.
   std::uint32_t block_for(std::size_t num_workers) const {
-    constexpr std::size_t kLeast = 8, kMost = 1024, kBlocksAWorker = 32;
+    constexpr std::size_t kLeast = 8, kMost = 1024, kBlocksPerWorker = 32;
     const std::size_t longest = node_of_run_.empty() ? kMost : std::min(kMost, std::size_t{1} << run_bits_);
     return static_cast<std::uint32_t>(
-        std::clamp(capacity_ / (kBlocksAWorker * num_workers), std::min(kLeast, longest), longest));
+        std::clamp(capacity_ / (kBlocksPerWorker * num_workers), std::min(kLeast, longest), longest));
   }
   /// Takes a block of `count` ids and returns the first. Any worker may call it at any time: the mutex is
   /// taken about once per thousand cells. Throws std::bad_alloc when the capacity is used up.
@@ -46,13 +46,13 @@ class IdArena {
   }
   /// Reduces the number of ids that may be taken by `count`, and replaces any earlier reduction. Returns
   /// false if more are taken already.
-  bool withhold(std::size_t count) {
+  bool reduce_capacity(std::size_t count) {
     const std::scoped_lock lock(mutex_);
     capacity_ = num_ids_ - std::min(num_ids_, count);
     return bound() <= capacity_;
   }
   /// True if more ids were requested than there were.
-  bool is_used_up() const { return is_used_up_.load(std::memory_order_relaxed); }
+  bool is_exhausted() const { return is_exhausted_.load(std::memory_order_relaxed); }
   /// Returns unused ids of any node to the arena; takes them out of `ids` one by one. Throws std::bad_alloc.
   void give_back(std::vector<std::uint32_t>& ids) {
     const std::scoped_lock lock(mutex_);
@@ -84,7 +84,7 @@ class IdArena {
     const std::uint32_t first = bound();
     const std::uint32_t size = node_of_run_.empty() ? count : 1u << run_bits_;
     if (first + static_cast<std::size_t>(size) > capacity_) {
-      is_used_up_.store(true, std::memory_order_relaxed);
+      is_exhausted_.store(true, std::memory_order_relaxed);
       throw std::bad_alloc();
     }
     if (!node_of_run_.empty()) node_of_run_[first >> run_bits_] = node;
@@ -93,14 +93,14 @@ class IdArena {
     nodes_[node].end = first + size;
   }
 
-  std::size_t num_ids_, capacity_;  // the ids between them are withheld
+  std::size_t num_ids_, capacity_;  // the ids between them may not be taken
   unsigned run_bits_;
   std::mutex mutex_;
   std::vector<OfNode> nodes_;
   std::vector<NodeIndex> node_of_run_;  // empty on one node
   // Relaxed: an id is handed on under locks, or with a list entry under a mutex.
   std::atomic<std::uint32_t> bound_ = 0;
-  std::atomic<bool> is_used_up_ = false;
+  std::atomic<bool> is_exhausted_ = false;
 };
 
 }  // namespace podm

@@ -142,7 +142,7 @@ class Mesh {
     return has(c, kReliance);
   }
   /// Sets relies_on_others(). The caller has reserved the cell or made it.
-  void tell_reliance(CellId c, bool relies_on_others) {
+  void set_relies_on_others(CellId c, bool relies_on_others) {
     step();
     assert_may_read(*this, c);
     if (has(c, kReliance) != relies_on_others) put(c, kReliance, relies_on_others);
@@ -228,9 +228,9 @@ class Mesh {
 
   /// Reduces the capacity by `cells` and replaces any earlier reduction, because other data needs the memory.
   /// Returns false if the store already holds more; it then gets no more ids.
-  bool withhold(std::size_t cells) { return cell_ids_.withhold(cells); }
+  bool reduce_capacity(std::size_t cells) { return cell_ids_.reduce_capacity(cells); }
   /// True if a cell or a vertex was requested beyond the capacity.
-  bool is_used_up() const { return cell_ids_.is_used_up() || vertex_ids_.is_used_up(); }
+  bool is_exhausted() const { return cell_ids_.is_exhausted() || vertex_ids_.is_exhausted(); }
 
   /// The arenas that know which ids exist and which node owns them. Pools take ids from them.
   IdArena& cell_ids() { return cell_ids_; }

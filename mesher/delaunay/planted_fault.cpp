@@ -26,7 +26,7 @@ LocksTaken named_in_environment() {
     if (asked == std::string(name)) return locks;
     names += std::string(" ") + name;
   }
-  throw InputError("PODM_PLANTED_FAULT: no such fault: '" + std::string(asked) + "'; there are" + names);
+  throw InputError("PODM_PLANTED_FAULT: unknown fault '" + std::string(asked) + "'; known faults:" + names);
 }
 
 LocksTaken& planted() {

@@ -115,7 +115,7 @@ void VertexMove::fill(Pool& pool, Region& region, VertexId moved) {
     std::replace(vertices.begin(), vertices.end(), v_, moved);
     mesh_.renew(ids_[i], vertices);
     mesh_.set_sphere(ids_[i], {cells_[i].center, cells_[i].squared_radius});
-    mesh_.tell_reliance(ids_[i], relies_[i] != 0);
+    mesh_.set_relies_on_others(ids_[i], relies_[i] != 0);
   }
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (is_dug(kFirstPlanned + static_cast<CellId>(i))) continue;

@@ -62,7 +62,9 @@ class VertexMove {
   void glue_star();
 
   /// Sets the future value of Mesh::relies_on_others for a planned cell, once the star is glued.
-  void tell_reliance(CellId c, bool relies_on_others) { relies_[c - kFirstPlanned] = relies_on_others; }
+  void set_relies_on_others(CellId c, bool relies_on_others) {
+    relies_[c - kFirstPlanned] = relies_on_others;
+  }
 
   std::size_t num_cells() const;
   /// Replaces the region by the planned cells, once the star is glued. `moved` is the vertex's id there.

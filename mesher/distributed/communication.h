@@ -61,7 +61,7 @@ class Communication {
   virtual void charge(double /*seconds*/) {}
 
  protected:
-  void check_one_a_rank(const std::vector<Bytes>& messages) const {
+  void check_one_per_rank(const std::vector<Bytes>& messages) const {
     if (messages.size() != static_cast<std::size_t>(size()))
       throw InternalError(std::to_string(messages.size()) + " messages for " + std::to_string(size()) +
                           " ranks");

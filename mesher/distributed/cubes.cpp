@@ -87,9 +87,9 @@ CubeGrid::CubeGrid(const Box& box, double side_mm)
 }
 
 MortonCode CubeGrid::place_on_curve(const Point& p) const {
-  constexpr double kPlacesASide = 16;  // places per side of a cube
+  constexpr double kPlacesPerSide = 16;  // places per side of a cube
   constexpr double kLast = (1u << kMortonBits) - 1;
-  const Vector g = kPlacesASide * per_mm_ * (p - origin_);
+  const Vector g = kPlacesPerSide * per_mm_ * (p - origin_);
   const auto along = [=](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, kLast)); };
   return morton_code({along(g.x), along(g.y), along(g.z)});
 }

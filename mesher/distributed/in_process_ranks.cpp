@@ -230,7 +230,7 @@ void MeetingPlace::check_agreement(const Part& part) {
   if (part.collective != agreed_.collective)
     fault(fmt::format("{} called {}", agreed_.first, name_of(agreed_.collective)));
   if (part.values.size() != agreed_.num_values)
-    fault(fmt::format("{} called it, of {} values and not {}", agreed_.first, agreed_.num_values,
+    fault(fmt::format("{} called it with {} values, not {}", agreed_.first, agreed_.num_values,
                       part.values.size()));
 }
 
@@ -340,7 +340,7 @@ class InProcessRank final : public Communication {
   int rank() const override { return rank_; }
   int size() const override { return place_.size(); }
   std::vector<Bytes> all_to_all(std::vector<Bytes> messages) override {
-    check_one_a_rank(messages);
+    check_one_per_rank(messages);
     return take_part({Collective::kAllToAll, std::move(messages)});
   }
   std::vector<Bytes> all_gather(Bytes message) override {
@@ -388,7 +388,7 @@ void run_rank(MeetingPlace& place, int rank, const std::function<void(Communicat
 std::vector<RankReport> run_ranks(const InProcessOptions& options,
                                   const std::function<void(Communication&)>& body) {
   if (options.num_ranks < 1)
-    throw InputError(fmt::format("{} ranks: one is needed at least", options.num_ranks));
+    throw InputError(fmt::format("{} ranks: at least one is needed", options.num_ranks));
   MeetingPlace place(options);
   {
     std::vector<std::jthread> threads;

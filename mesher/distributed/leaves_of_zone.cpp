@@ -2,12 +2,12 @@
 
 #include <array>
 
+#include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/leaf_loop.h"
 #include "algorithms/podm_loop.h"
 #include "delaunay/operation_steps.h"
-#include "distributed/together.h"
+#include "distributed/collective_errors.h"
 #include "refine/attempt.h"
 
 namespace podm {
@@ -16,8 +16,9 @@ LeavesOfZone::LeavesOfZone(Construction& construction, const TwoLevels& levels, 
                            Algorithm algorithm, Communication& ranks)
     : construction_(construction), levels_(levels), options_(options), algorithm_(algorithm) {
   std::uint64_t bytes = 0;
-  do_together([&] { bytes = checked_bytes_of_leaves(construction.problem(), options, levels.clamp); }, ranks);
-  construction.withhold(bytes);
+  do_collectively([&] { bytes = checked_bytes_of_leaves(construction.problem(), options, levels.clamp); },
+                  ranks);
+  construction.reduce_capacity(bytes);
   std::array<std::uint64_t, 1> num_nodes{static_cast<std::uint64_t>(construction.team().num_nodes)};
   ranks.sum(num_nodes);
   num_nodes_ = num_nodes[0];
@@ -31,11 +32,11 @@ LeavesOfZone::Refined LeavesOfZone::operator()(const Zone& zone, const Construct
     octree = make_octree(problem, radii_of(problem), levels_.clamp, options_, num_nodes_,
                          construction_.stop().over());
   });
-  construction_.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
+  construction_.reduce_capacity(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   Refined refined = algorithm_ == Algorithm::kPdr ? refine<NoLocks>(zone, cells, *octree)
                                                   : refine<VertexLocks>(zone, cells, *octree);
   octree.reset();
-  construction_.withhold(0);
+  construction_.reduce_capacity(0);
   return refined;
 }
 

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "algorithms/check_options.h"
+#include "distributed/collective_errors.h"
 #include "distributed/pieces.h"
 #include "distributed/report_of_ranks.h"
-#include "distributed/together.h"
 #include "io/sha256.h"
 #include "podm/mesh_io.h"
 #include "run/extract_mesh.h"
@@ -41,7 +41,7 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual time");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
-  refuse(options.sizes.image || !options.sizes.near.empty(), "a size by place");
+  refuse(options.sizes.image || !options.sizes.near.empty(), "a local size");
   for_each_option(options, [](const Declaration& of, const auto& value) {
     refuse(of.not_on_ranks && !is_default(of.name, value), spelled(of));
   });
@@ -199,7 +199,7 @@ MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions
                                    Communication& ranks, const ProgressCallback& progress,
                                    std::stop_token stop, SharedIsosurface* isosurface) {
   std::optional<RunOnRank> run;
-  do_together(
+  do_collectively(
       [&] {
         check_options(image, options);
         check_options_on_ranks(options);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "distributed/communication.h"
-#include "distributed/made_once.h"
 #include "distributed/rounds.h"
+#include "distributed/shared_value.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_piece.h"
 
@@ -33,7 +33,7 @@ struct MeshingOnRanks {
   std::vector<PartOfRank> parts;  ///< by rank
 };
 
-using SharedIsosurface = MadeOnce<Isosurface>;
+using SharedIsosurface = SharedValue<Isosurface>;
 
 /// Throws InputError on options that ranks do not support: virtual workers, target numbers of cells,
 /// kPodmHome, schedules.
@@ -42,9 +42,9 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if requested. On one rank
 /// it runs the algorithm itself. Collective: image and options are the same on all ranks, except threads and
 /// memory, which each rank chooses. A rank that makes more than its even share of the remaining max_elements
-/// in a round ends the run. Throws RefusedByAll (distributed/together.h) if images or options differ between
-/// ranks, or if options are bad or not supported on ranks. If memory runs out between rounds, that rank
-/// throws std::bad_alloc, and the caller must end the other ranks. Ranks of one process may share the
+/// in a round ends the run. Throws RefusedByAll (distributed/collective_errors.h) if images or options differ
+/// between ranks, or if options are bad or not supported on ranks. If memory runs out between rounds, that
+/// rank throws std::bad_alloc, and the caller must end the other ranks. Ranks of one process may share the
 /// isosurface if they have the same image; otherwise each rank makes its own.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},

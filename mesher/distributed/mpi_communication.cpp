@@ -101,7 +101,7 @@ class MpiCommunication final : public Communication {
 // all messages in one array, of less than 2^31 bytes. Each rank begins with its neighbours, so that not all
 // ranks begin with rank 0.
 std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
-  check_one_a_rank(messages);
+  check_one_per_rank(messages);
   const CollectiveClock clock(in_collectives_);
   std::vector<std::uint64_t> to_send(num_ranks()), to_receive(num_ranks());
   for (std::size_t i = 0; i < num_ranks(); ++i) to_send[i] = messages[i].size();
@@ -191,7 +191,7 @@ MpiSession::MpiSession(int& argc, char**& argv) {
   int provided = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
   if (provided < MPI_THREAD_FUNNELED)
-    throw std::runtime_error("this MPI does not serve programs of several threads (MPI_THREAD_FUNNELED)");
+    throw std::runtime_error("this MPI does not support programs with several threads (MPI_THREAD_FUNNELED)");
 }
 
 MpiSession::~MpiSession() { MPI_Finalize(); }

@@ -120,10 +120,10 @@ class PieceOfMesh {
       if (rank != self) wanted[rank].push_back(p);
     });
     const std::vector<Bytes> asked = ranks_.all_to_all(messages_of(wanted));
-    const ByPoint<Number> told = number_own(asked);
+    const ByPoint<Number> number_of = number_own(asked);
     std::vector<std::vector<Number>> answers(asked.size());
     for (std::size_t rank = 0; rank < asked.size(); ++rank)
-      for (const Point& p : values_of<Point>(asked[rank])) answers[rank].push_back(told.at(p));
+      for (const Point& p : values_of<Point>(asked[rank])) answers[rank].push_back(number_of.at(p));
     std::vector<std::vector<Number>> numbers;
     for (const Bytes& message : ranks_.all_to_all(messages_of(answers)))
       numbers.push_back(values_of<Number>(message));
@@ -140,30 +140,30 @@ class PieceOfMesh {
   // Numbers the vertices of this part of space, and returns the numbers that other ranks request. This rank
   // owns a vertex if it uses it; otherwise the first rank that requests it owns it.
   ByPoint<Number> number_own(const std::vector<Bytes>& asked) {
-    ByPoint<Number> told;
+    ByPoint<Number> number_of;
     for (std::size_t rank = 0; rank < asked.size(); ++rank)
       for (const Point& p : values_of<Point>(asked[rank]))
-        told.try_emplace(p, Number{kNoNumber, static_cast<std::int64_t>(rank)});
+        number_of.try_emplace(p, Number{kNoNumber, static_cast<std::int64_t>(rank)});
     own_numbers_.assign(mesh_.vertex_bound(), kNoNumber);
     std::uint64_t count = 0;
     for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
       const Vertex& vertex = mesh_.vertex(v);
       if (vertex.kind == VertexKind::kUnused || rank_of(vertex.point) != ranks_.rank()) continue;
-      if (is_used_[v] != 0 || told.contains(vertex.point)) own_numbers_[v] = count++;
+      if (is_used_[v] != 0 || number_of.contains(vertex.point)) own_numbers_[v] = count++;
     }
     const auto [first, total] = sums_of(count);
     total_vertices_ = total;
     for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
       if (own_numbers_[v] == kNoNumber) continue;
       own_numbers_[v] += first;
-      const auto found = told.find(mesh_.point(v));
-      if (found != told.end())
+      const auto found = number_of.find(mesh_.point(v));
+      if (found != number_of.end())
         found->second = {own_numbers_[v], is_used_[v] != 0 ? ranks_.rank() : found->second.owner};
     }
-    for (const auto& number : told)
+    for (const auto& number : number_of)
       if (number.second.id == kNoNumber)
-        throw InternalError("another rank has a vertex that its own rank has not");
-    return told;
+        throw InternalError("another rank uses a vertex that the rank of its part of space lacks");
+    return number_of;
   }
 
   // Calls visit(id, point, rank it belongs to), in the order of ids.

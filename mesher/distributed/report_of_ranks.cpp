@@ -43,19 +43,19 @@ Counters read_counters(MessageReader& reader) {
 }
 
 // A worker's place; -1 for no processor.
-struct ToldPlace {
+struct SentPlace {
   int node, socket, processor, bound_to;
 };
 
 void append_worker(Bytes& message, const WorkerReport& worker) {
-  append_one(message, ToldPlace{worker.node, worker.socket, worker.processor.value_or(-1),
+  append_one(message, SentPlace{worker.node, worker.socket, worker.processor.value_or(-1),
                                 worker.bound_to.value_or(-1)});
   append_counters(message, worker.counters);
 }
 
 WorkerReport read_worker(MessageReader& reader) {
-  const auto place = read_one<ToldPlace>(reader);
-  const auto number = [](int told) { return told < 0 ? std::nullopt : std::optional(told); };
+  const auto place = read_one<SentPlace>(reader);
+  const auto number = [](int sent) { return sent < 0 ? std::nullopt : std::optional(sent); };
   return {.node = place.node,
           .socket = place.socket,
           .processor = number(place.processor),
@@ -73,7 +73,7 @@ std::vector<Value> values_of(const std::map<Key, Value>& map) {
 
 // Returns the message of a rank. All ranks have the same labels (those of the image) and the same phases
 // (those of the run).
-Bytes told_of(const MeshingReport& own, const PartOfRank& part) {
+Bytes message_of(const MeshingReport& own, const PartOfRank& part) {
   Bytes message;
   append_one(message, std::array{part.cells, part.boundary_facets, part.store_cells});
   append(message, values_of(part.phases_s));
@@ -118,7 +118,7 @@ void add(const Guarantees& more, Guarantees& sum) {
 
 template <class Key, class Value>
 void add(const std::vector<Value>& more, std::map<Key, Value>& sums) {
-  if (more.size() != sums.size()) throw InternalError("ranks tell of other labels or phases");
+  if (more.size() != sums.size()) throw InternalError("ranks report different labels or phases");
   std::size_t next = 0;
   for (auto& [key, sum] : sums) sum += more[next++];
 }
@@ -142,8 +142,9 @@ MeshingReport none_like(MeshingReport own) {
 }
 
 // Adds the message of a rank. `like` is a part with the phases that all ranks have.
-PartOfRank add_told(const Bytes& told, const PartOfRank& like, MeshingReport& report, bool is_first) {
-  MessageReader reader(told);
+PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, MeshingReport& report,
+                            bool is_first) {
+  MessageReader reader(message);
   const auto numbers = read_one<std::array<std::uint64_t, 3>>(reader);
   PartOfRank part{.cells = numbers[0],
                   .boundary_facets = numbers[1],
@@ -177,10 +178,11 @@ PartOfRank add_told(const Bytes& told, const PartOfRank& like, MeshingReport& re
 
 std::pair<MeshingReport, std::vector<PartOfRank>> report_of_ranks(MeshingReport own, PartOfRank part,
                                                                   Communication& ranks) {
-  const std::vector<Bytes> told = ranks.all_gather(told_of(own, part));
+  const std::vector<Bytes> messages = ranks.all_gather(message_of(own, part));
   MeshingReport report = none_like(std::move(own));
   std::vector<PartOfRank> parts;
-  for (const Bytes& message : told) parts.push_back(add_told(message, part, report, parts.empty()));
+  for (const Bytes& message : messages)
+    parts.push_back(add_part_of_rank(message, part, report, parts.empty()));
   for (auto& [phase, seconds] : report.phases_s) {
     for (const PartOfRank& of_rank : parts) seconds += of_rank.phases_s.at(phase);
     seconds /= static_cast<double>(parts.size());

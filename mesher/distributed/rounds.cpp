@@ -99,11 +99,11 @@ std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& prob
 
 // Returns the cube side that suits most cells, unless blocks would then be too coarse.
 double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
-  constexpr double kCubesABlock = 512;
+  constexpr double kCubesPerBlock = 512;
   const Vector extent = object.high - object.low;
   const double share_mm3 = extent.x * extent.y * extent.z / num_ranks;
   return std::max(kCubeOverRadius * radii.least,
-                  std::min(kCubeOverRadius * radii.most, std::cbrt(share_mm3 / kCubesABlock)));
+                  std::min(kCubeOverRadius * radii.most, std::cbrt(share_mm3 / kCubesPerBlock)));
 }
 
 // Balls that have a point in common and are no larger than a given ball lie within two of its radii. With
@@ -140,7 +140,7 @@ class Rounds {
     if (is_over_anywhere()) return all_of_first_rank();
     construction_.timed("initial", [&] { exchange_.copy_first(); });
     cells_of_all_ = static_cast<std::int64_t>(construction_.mesh().num_cells());
-    cells_told_ = stop_.num_cells();
+    cells_reported_ = stop_.num_cells();
     divide_space();
     spending_.end("initial");
     refine_in_rounds();
@@ -167,8 +167,8 @@ class Rounds {
   void divide_space() {
     Bytes message;
     if (ranks_.rank() == 0) append(message, cut().cuts());
-    const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
-    blocks_.emplace(grid_, MessageReader(told.front()).read<Blocks::Cut>());
+    const std::vector<Bytes> received = ranks_.all_gather(std::move(message));
+    blocks_.emplace(grid_, MessageReader(received.front()).read<Blocks::Cut>());
   }
 
   Blocks cut() const {
@@ -223,7 +223,7 @@ class Rounds {
       report.refine_s = processor_seconds() - start_s - report.update_s;
       spending_.end(round == 0 ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-        if (zone_of_[cube] != kNobody) exchange_.note_writer(cube, zone_of_[cube]);
+        if (zone_of_[cube] != kNoRank) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
       rounds_.push_back(report);
     } while (rounds_.back().deferred > 0 && !is_over_);
@@ -231,10 +231,10 @@ class Rounds {
 
   // Divides the rest of the cell limit among the ranks that have work.
   void share_limit(bool has_work) {
-    const std::int64_t more = stop_.num_cells() - cells_told_;
+    const std::int64_t more = stop_.num_cells() - cells_reported_;
     std::array<std::uint64_t, 2> sums{static_cast<std::uint64_t>(more), has_work ? 1u : 0u};
     ranks_.sum(sums);  // modulo 2^64, so negative numbers add up as well
-    cells_told_ += more;
+    cells_reported_ += more;
     cells_of_all_ += static_cast<std::int64_t>(sums[0]);
     stop_.share_limit(cells_of_all_, std::max(1, static_cast<int>(sums[1])));
   }
@@ -390,8 +390,8 @@ class Rounds {
     append(message, around.cubes());
     append(message, counts);
     num_waiting_.assign(grid_.num_cubes(), 0);
-    for (const Bytes& told : ranks_.all_gather(std::move(message))) {
-      MessageReader reader(told);
+    for (const Bytes& received : ranks_.all_gather(std::move(message))) {
+      MessageReader reader(received);
       for (const CubeId cube : reader.read<CubeId>()) waiting.insert(cube);
       for (const auto& [cube, cells] : reader.read<CubeCount>()) num_waiting_[cube] += cells;
     }
@@ -405,9 +405,9 @@ class Rounds {
     for (std::size_t rank = 0; rank < names.size(); ++rank)
       if (!names[rank].empty()) append(messages[rank], names[rank]);
     std::vector<CellName> here;
-    for (const Bytes& told : ranks_.all_to_all(std::move(messages))) {
-      if (told.empty()) continue;
-      const auto more = MessageReader(told).read<CellName>();
+    for (const Bytes& received : ranks_.all_to_all(std::move(messages))) {
+      if (received.empty()) continue;
+      const auto more = MessageReader(received).read<CellName>();
       here.insert(here.end(), more.begin(), more.end());
     }
     return here;
@@ -426,13 +426,13 @@ class Rounds {
   std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
   std::optional<Blocks> blocks_;
   double reach_over_radius_ = 1;  // the largest ball of a cube requests a zone within this many radii
-  std::vector<int> zone_of_;      // by cube: the rank of the cube's zone, or kNobody
+  std::vector<int> zone_of_;      // by cube: the rank of the cube's zone, or kNoRank
   std::vector<std::uint32_t> num_waiting_;  // by cube: deferred cells on all ranks before the round
   std::vector<std::uint64_t> load_;         // by rank: deferred cells assigned to it
   std::vector<RoundReport> rounds_;
-  std::int64_t cells_of_all_ = 0;  // cells of the whole mesh before the round
-  std::int64_t cells_told_ = 0;    // number of this rank's added cells that the other ranks know
-  bool is_over_ = false;           // the same on all ranks
+  std::int64_t cells_of_all_ = 0;    // cells of the whole mesh before the round
+  std::int64_t cells_reported_ = 0;  // number of this rank's added cells that the other ranks know
+  bool is_over_ = false;             // the same on all ranks
 };
 
 }  // namespace

@@ -54,12 +54,12 @@ void VertexExchange::copy_first() {
   if (ranks_.rank() == 0) {
     Bytes question;
     append(question, all.cubes());
-    message = tell({std::move(question)}).front();
+    message = answers_to({std::move(question)}).front();
   }
-  const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+  const std::vector<Bytes> received = ranks_.all_gather(std::move(message));
   if (ranks_.rank() == 0) return;
   Update update;
-  std::vector<Change> changes = differences(told, update);
+  std::vector<Change> changes = differences(received, update);
   apply(changes, nullptr);
 }
 
@@ -77,18 +77,18 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
   std::vector<Bytes> questions(asked.size());
   for (std::size_t rank = 0; rank < asked.size(); ++rank)
     if (!asked[rank].empty()) append(questions[rank], asked[rank]);
-  const std::vector<Bytes> told = ranks_.all_to_all(tell(ranks_.all_to_all(std::move(questions))));
-  std::vector<Change> changes = differences(told, update);
+  const std::vector<Bytes> received = ranks_.all_to_all(answers_to(ranks_.all_to_all(std::move(questions))));
+  std::vector<Change> changes = differences(received, update);
   apply(changes, made);
   return update;
 }
 
 // Returns, for each rank, the cubes that it requested and all vertices in them.
-std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
+std::vector<Bytes> VertexExchange::answers_to(const std::vector<Bytes>& asked) const {
   struct Answer {
     std::size_t rank;
     std::vector<CubeId> cubes;
-    std::vector<ToldVertex> vertices;
+    std::vector<SentVertex> vertices;
   };
   std::vector<Answer> answers;
   std::unordered_multimap<CubeId, std::size_t> answers_of;  // by cube
@@ -121,18 +121,18 @@ std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
 }
 
 // Compares both sets of vertices in the order of their coordinates.
-std::vector<VertexExchange::Change> VertexExchange::differences(const std::vector<Bytes>& told,
+std::vector<VertexExchange::Change> VertexExchange::differences(const std::vector<Bytes>& received,
                                                                 Update& update) const {
   CubeSet cubes(grid_);
   std::vector<Change> theirs, ours, changes;
-  for (const Bytes& message : told) {
+  for (const Bytes& message : received) {
     if (message.empty()) continue;
     MessageReader reader(message);
     for (const CubeId cube : reader.read<CubeId>()) cubes.insert(cube);
-    for (const ToldVertex& vertex : reader.read<ToldVertex>()) theirs.push_back({vertex.point, vertex.kind});
+    for (const SentVertex& vertex : reader.read<SentVertex>()) theirs.push_back({vertex.point, vertex.kind});
     reader.expect_end();
   }
-  update.vertices_told = theirs.size();
+  update.vertices_received = theirs.size();
   for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
     const Vertex& vertex = mesh_.vertex(v);
     if (is_shared(vertex.kind) && cubes.has(vertex.point))
@@ -170,13 +170,14 @@ void VertexExchange::apply(std::vector<Change>& changes, std::vector<CellId>* ma
   }
   std::sort(order.begin(), order.end());
   const auto check = [](StepResult result) {
-    if (result != StepResult::kDone) throw InternalError("what another rank tells does not fit in the mesh");
+    if (result != StepResult::kDone)
+      throw InternalError("vertices received from another rank do not fit in the mesh");
   };
   for (const auto& place : order) {
     const auto& [point, kind] = changes[place.change];
     if (kind == VertexKind::kUnused) {
       const std::optional<Found> found = find_vertex(point);
-      if (!found) throw InternalError("a vertex to be taken away is not there");
+      if (!found) throw InternalError("a vertex to be removed does not exist");
       check(operation_.plan_removal(found->vertex, found->cell));
       check(operation_.commit_removals());
       note(changes[place.change], found->vertex);
@@ -196,7 +197,7 @@ void VertexExchange::note(const Change& change, VertexId vertex) {
   if (log_ == nullptr) return;
   constexpr std::size_t kEntriesToFlush = 4096;
   const bool is_gone = change.kind == VertexKind::kUnused;
-  const auto kind = is_gone ? kForgottenVertex : kLearntVertex + static_cast<std::uint32_t>(change.kind);
+  const auto kind = is_gone ? kReceivedRemoval : kReceivedInsertion + static_cast<std::uint32_t>(change.kind);
   const Point& p = change.point;
   unlogged_.operations.push_back({.sequence = log_->next_sequence(),
                                   .point = {p.x, p.y, p.z},

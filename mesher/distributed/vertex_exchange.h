@@ -15,13 +15,13 @@ namespace podm {
 
 /// The cost of one update.
 struct Update {
-  std::uint64_t cubes = 0;          // cubes received
-  std::uint64_t vertices_told = 0;  // vertices received in them
+  std::uint64_t cubes = 0;              // cubes received
+  std::uint64_t vertices_received = 0;  // vertices received in them
   std::uint64_t inserted = 0, removed = 0;
 
   Update& operator+=(const Update& b) {
     cubes += b.cubes;
-    vertices_told += b.vertices_told;
+    vertices_received += b.vertices_received;
     inserted += b.inserted;
     removed += b.removed;
     return *this;
@@ -54,7 +54,7 @@ class VertexExchange {
     VertexId vertex;
   };
   std::optional<Found> find_vertex(const Point& p);
-  struct ToldVertex {
+  struct SentVertex {
     Point point;
     VertexKind kind;
   };
@@ -63,8 +63,8 @@ class VertexExchange {
     VertexKind kind;  // kUnused: removed
   };
 
-  std::vector<Bytes> tell(const std::vector<Bytes>& asked) const;
-  std::vector<Change> differences(const std::vector<Bytes>& told, Update& update) const;
+  std::vector<Bytes> answers_to(const std::vector<Bytes>& asked) const;
+  std::vector<Change> differences(const std::vector<Bytes>& received, Update& update) const;
   void apply(std::vector<Change>& changes, std::vector<CellId>* made);
   void note(const Change& change, VertexId vertex);
   void flush_log();

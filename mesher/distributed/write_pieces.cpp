@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "distributed/collective_errors.h"
 #include "distributed/messages.h"
-#include "distributed/together.h"
 #include "io/write_pvtu.h"
 #include "io/write_xdmf.h"
 
@@ -17,20 +17,20 @@ LabelPairs gathered(const LabelPairs& own, Communication& ranks) {
   Bytes message;
   append(message, pairs);
   pairs.clear();
-  for (const Bytes& told : ranks.all_gather(message)) {
-    const auto theirs = MessageReader(told).read<LabelPair>();
+  for (const Bytes& received : ranks.all_gather(message)) {
+    const auto theirs = MessageReader(received).read<LabelPair>();
     pairs.insert(pairs.end(), theirs.begin(), theirs.end());
   }
   return LabelPairs(pairs);
 }
 
 // Returns the text of the first rank.
-std::string told_by_first(const std::string& text, Communication& ranks) {
+std::string text_of_first_rank(const std::string& text, Communication& ranks) {
   Bytes message;
   append(message, std::span<const char>(text));
   const std::vector<Bytes> all = ranks.all_gather(message);
-  const std::vector<char> told = MessageReader(all.front()).read<char>();
-  return {told.begin(), told.end()};
+  const std::vector<char> first = MessageReader(all.front()).read<char>();
+  return {first.begin(), first.end()};
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void write_pieces(const MeshPiece& piece, const std::string& path, Communication
 
 void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& ranks) {
   const auto on_first = [&](const auto& action) {
-    do_together(
+    do_collectively(
         [&] {
           if (piece.rank == 0) action();
         },
@@ -59,10 +59,10 @@ void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& 
     files = write_pvtu_piece(piece, path);
     for (AtomicFile& file : files) file.finish();
   };
-  do_together(write_aside, ranks);
+  do_collectively(write_aside, ranks);
   int num_earlier_pieces = 0;
   on_first([&] { num_earlier_pieces = withdraw_pvtu_index(path); });
-  do_together([&] { publish_together(files); }, ranks);
+  do_collectively([&] { publish_together(files); }, ranks);
   on_first([&] { write_pvtu_index(path, piece.num_pieces, num_earlier_pieces); });
 }
 
@@ -76,18 +76,18 @@ void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& 
     arrays.emplace(arrays_path);
     create_xdmf_arrays(arrays->temporary_path(), arrays_path, part, pairs);
   };
-  do_together(make_arrays, ranks);
-  const std::string file = told_by_first(arrays ? arrays->temporary_path() : "", ranks);
+  do_collectively(make_arrays, ranks);
+  const std::string file = text_of_first_rank(arrays ? arrays->temporary_path() : "", ranks);
   for (int turn = 0; turn < piece.num_pieces; ++turn) {
     const auto add_rows = [&] {
       if (turn == piece.rank) write_xdmf_part(file, arrays_path, part, pairs);
     };
-    do_together(add_rows, ranks);
+    do_collectively(add_rows, ranks);
   }
   const auto publish = [&] {
     if (arrays) publish_xdmf(path, part, *arrays);
   };
-  do_together(publish, ranks);
+  do_collectively(publish, ranks);
 }
 
 }  // namespace podm

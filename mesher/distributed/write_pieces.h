@@ -12,9 +12,9 @@ namespace podm {
 /// can write there.
 void check_pieces_path(const std::string& path);
 
-/// Writes the format of the path's extension. Collective. Throws RefusedByAll (distributed/together.h) that
-/// names the file if any rank cannot write. Nothing new is left in that case, and an earlier mesh remains
-/// unless its pieces were being replaced.
+/// Writes the format of the path's extension. Collective. Throws RefusedByAll
+/// (distributed/collective_errors.h) that names the file if any rank cannot write. Nothing new is left in
+/// that case, and an earlier mesh remains unless its pieces were being replaced.
 void write_pieces(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
 /// Writes x.pvtu and its pieces (io/write_pvtu.h). No piece gets its name before all pieces are on the disks,

@@ -13,9 +13,9 @@ namespace {
 // After this round, cells that still wait need more room than cuts leave.
 constexpr int kLastWithCuts = 8;
 // With fewer deferred cells a cut is not worth the round that it may cost.
-constexpr std::uint64_t kCellsAZone = 5000;
+constexpr std::uint64_t kCellsPerZone = 5000;
 // More than one zone per rank, so that the load can be balanced.
-constexpr std::uint64_t kZonesARank = 2;
+constexpr std::uint64_t kZonesPerRank = 2;
 // Cells within this many cubes on either side of a cut may have to wait again.
 constexpr int kCubesBesideCut = 3;
 
@@ -150,14 +150,15 @@ std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::u
 }  // namespace
 
 bool has_cuts(int round, std::uint64_t num_waiting) {
-  return round <= kLastWithCuts && num_waiting >= 2 * kCellsAZone;
+  return round <= kLastWithCuts && num_waiting >= 2 * kCellsPerZone;
 }
 
 std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
                                 const std::vector<std::uint32_t>& num_cells,
                                 std::vector<std::uint64_t>& load) {
   const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
-  const std::size_t num_zones = std::min<std::uint64_t>(kZonesARank * load.size(), all_cells / kCellsAZone);
+  const std::size_t num_zones =
+      std::min<std::uint64_t>(kZonesPerRank * load.size(), all_cells / kCellsPerZone);
   const std::vector<std::size_t> zone_of =
       has_cuts(round, all_cells) ? CutZones(waiting, num_cells, num_zones)() : connected_zones(waiting);
   std::vector<ZoneSize> zones;
@@ -170,7 +171,7 @@ std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& 
   }
   const std::vector<int> rank_of = ranks_of(zones, load);
   std::vector<int> rank_of_cube;
-  for (const std::size_t zone : zone_of) rank_of_cube.push_back(zone == kNoZone ? kNobody : rank_of[zone]);
+  for (const std::size_t zone : zone_of) rank_of_cube.push_back(zone == kNoZone ? kNoRank : rank_of[zone]);
   return rank_of_cube;
 }
 

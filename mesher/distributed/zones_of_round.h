@@ -14,13 +14,13 @@
 
 namespace podm {
 
-inline constexpr int kNobody = -1;
+inline constexpr int kNoRank = -1;
 
 /// Returns true if a round cuts the deferred cells. Other rounds have connected zones, which must grow each
 /// time for the rounds to end.
 bool has_cuts(int round, std::uint64_t num_waiting);
 
-/// Returns the rank of every cube's zone, or kNobody. `waiting` are the cubes that deferred cells request,
+/// Returns the rank of every cube's zone, or kNoRank. `waiting` are the cubes that deferred cells request,
 /// and their neighbours; `num_cells` is the number of deferred cells by cube. `load` holds the cells that
 /// each rank had in earlier rounds; the cells of this round are added.
 std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,

@@ -122,7 +122,7 @@ template <class Voxel>
                          ", " + std::to_string(k) + ") is " + std::to_string(voxel) +
                          ", no label (an integer, 0 to 2^32 - 1)");
       }
-  refuse(path, "its voxels change while they are read");
+  refuse(path, "its voxels changed during reading");
 }
 
 // The different voxel values that one thread meets, as long as they are not too many and all are labels.

@@ -43,7 +43,7 @@ std::map<std::uint32_t, std::string> read_label_names(const std::string& path) {
     if (name.empty()) throw InputError(path + ":" + std::to_string(number) + ": the label has no name");
     names[static_cast<std::uint32_t>(value)] = name;
   }
-  if (names.empty()) throw InputError(path + ": the label table names no label");
+  if (names.empty()) throw InputError(path + ": the label table has no label");
   return names;
 }
 

@@ -128,7 +128,8 @@ std::vector<Range> parse_label_ranges(const std::string& text, const std::string
     const std::uint32_t first = parse_value(part.substr(0, dash), option);
     const std::uint32_t last =
         dash == std::string_view::npos ? first : parse_value(part.substr(dash + 1), option);
-    if (last < first) throw InputError(option + ": the range '" + std::string(part) + "' runs backwards");
+    if (last < first)
+      throw InputError(option + ": the range '" + std::string(part) + "' has its ends in the wrong order");
     ranges.emplace_back(first, last);
   }
   return ranges;
@@ -137,7 +138,7 @@ std::vector<Range> parse_label_ranges(const std::string& text, const std::string
 LabelSelection::Merge parse_merge(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
-    throw InputError("--merge: '" + text + "' gives no name (write it as 2,3=kidney)");
+    throw InputError("--merge: '" + text + "' has no name (write it as 2,3=kidney)");
   LabelSelection::Merge merge;
   merge.name = text.substr(equals + 1);
   for (const std::string_view part : split_at_commas(std::string_view(text).substr(0, equals)))

@@ -109,8 +109,8 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
     if (axis >= 3 && size[axis] > 1) refuse(path, "a 3-D image is needed (" + sizes + " voxels)");
     const auto n = static_cast<std::size_t>(size[axis]);
     if (n > kMaxVoxels / voxels)
-      refuse(path, "the image is too large (" + sizes + " voxels, the most are " +
-                       std::to_string(kMaxVoxels) + " in all)");
+      refuse(path, "the image is too large (" + sizes + " voxels, at most " + std::to_string(kMaxVoxels) +
+                       " in all are supported)");
     voxels *= n;
   }
   return voxels;
@@ -123,7 +123,7 @@ void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most
     text << std::setprecision(3) << static_cast<double>(number) / (1 << 30) << " GiB";
     return text.str();
   };
-  refuse(path, "its voxels take " + gib(bytes) + " while they are read, and there is no room for more than " +
+  refuse(path, "its voxels take " + gib(bytes) + " during reading, and there is room for only " +
                    gib(most_bytes) + " below the memory limit");
 }
 
@@ -174,7 +174,7 @@ void check_distance(const std::string& path, const std::vector<int>& size,
       voxels += std::abs(ras_to_voxel[4 * axis + row]) * furthest[row];
     if (!(voxels <= kFurthestVoxels))
       refuse(path, "the image reaches further than 2^33 voxels from the origin (axis " +
-                       std::to_string(axis) + "), where doubles are too coarse");
+                       std::to_string(axis) + "), where the resolution of doubles is too coarse");
   }
 }
 

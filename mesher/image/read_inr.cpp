@@ -85,7 +85,7 @@ RawImage read_inr(const std::string& path, std::uint64_t most_bytes) {
   raw.path = path;
   raw.size = {number(path, header, "XDIM", 0), number(path, header, "YDIM", 0),
               number(path, header, "ZDIM", 0)};
-  if (number(path, header, "VDIM", 1) != 1) refuse(path, "one value a voxel is needed (VDIM is not 1)");
+  if (number(path, header, "VDIM", 1) != 1) refuse(path, "one value per voxel is needed (VDIM is not 1)");
   raw.type = voxel_type(path, header);
   const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);

@@ -24,7 +24,8 @@ itk::ImageIOBase::Pointer reader_for(const std::string& path) {
 
 VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
   if (io.GetNumberOfComponents() != 1) {
-    refuse(path, "one value a voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
+    refuse(path,
+           "one value per voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
   }
   switch (io.GetComponentType()) {
     case itk::ImageIOBase::UCHAR:
@@ -106,7 +107,7 @@ RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
   raw.path = path;
   try {
     if (!io->CanReadFile(path.c_str()))
-      refuse(path, "not a file of the format its name promises (wrong magic or header)");
+      refuse(path, "not a file of the format of its name (wrong magic or header)");
     io->SetFileName(path);
     io->ReadImageInformation();
     for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) {

@@ -57,7 +57,7 @@ VoxelType voxel_type(const std::string& path, int datatype) {
     case DT_FLOAT64:
       return VoxelType::kDouble;
     default:
-      refuse(path, "one plain number a voxel is needed (NIfTI datatype " + std::to_string(datatype) + ")");
+      refuse(path, "one real number per voxel is needed (NIfTI datatype " + std::to_string(datatype) + ")");
   }
 }
 

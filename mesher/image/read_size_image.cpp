@@ -70,7 +70,7 @@ SizeImage read_size_image(const std::string& path, std::uint64_t most_bytes) {
                   .warnings = raw.warnings};
   for (const float radius : image.radius_mm)
     if (radius > 0) return image;
-  refuse(path, "no voxel has a size above 0 mm that is finite in single precision: nothing is bounded");
+  refuse(path, "no voxel has a size above 0 mm that is finite in single precision: the image bounds nothing");
 }
 
 }  // namespace podm

@@ -133,13 +133,13 @@ class ThinParts {
     std::vector<ThinPart> sorted;
     for (Components::Id part = 0; part < thin.size(); ++part) {
       if (thin[part].label == kBackground) continue;
-      ThinPart& told = parts[part];
-      told.label = thin[part].label;
-      told.num_voxels = thin[part].num_voxels;
-      told.kind = pieces[all.of(thin[part].first)] == 0 ? ThinKind::kWhole
-                  : beside[part].size() > 1             ? ThinKind::kBridge
-                                                        : ThinKind::kDetail;
-      sorted.push_back(told);
+      ThinPart& reported = parts[part];
+      reported.label = thin[part].label;
+      reported.num_voxels = thin[part].num_voxels;
+      reported.kind = pieces[all.of(thin[part].first)] == 0 ? ThinKind::kWhole
+                      : beside[part].size() > 1             ? ThinKind::kBridge
+                                                            : ThinKind::kDetail;
+      sorted.push_back(reported);
     }
     std::stable_sort(sorted.begin(), sorted.end(), [](const ThinPart& a, const ThinPart& b) {
       return std::pair(a.kind, b.num_voxels) < std::pair(b.kind, a.num_voxels);

@@ -86,7 +86,7 @@ void expect_meta_line(const std::string& path, const std::string& line, int numb
   if (line.size() > kLongestLine)
     refuse(path, place + " is longer than " + std::to_string(kLongestLine) + " bytes)");
   if (const std::size_t at = line.find('\r'); at != std::string::npos && at + 1 < line.size())
-    refuse(path, place + " has a carriage return in it)");
+    refuse(path, place + " contains a carriage return)");
   const std::size_t at = line.find_first_of("=:");
   if (!trimmed(line).empty() && (at == std::string::npos || line[at] != '='))
     refuse(path, place + " is not of the form 'name = value')");
@@ -107,7 +107,7 @@ class Inflater {
   Inflater(const std::string& path, const VoxelData& data)
       : path_(path), file_(data.path, std::ios::binary), stream_(new z_stream{}) {
     constexpr int kZlibOrGzip = 32 + MAX_WBITS;
-    if (inflateInit2(stream_.get(), kZlibOrGzip) != Z_OK) refuse(path, "zlib does not start");
+    if (inflateInit2(stream_.get(), kZlibOrGzip) != Z_OK) refuse(path, "zlib cannot be initialised");
     file_.seekg(static_cast<std::streamoff>(data.offset));
   }
 
@@ -240,7 +240,7 @@ std::vector<unsigned char> decompressed_voxels(const std::string& path, const Vo
   const std::string taken = std::to_string(stream.bytes_taken());
   if (!data.announced_bytes.empty() && data.announced_bytes != taken)
     warnings.push_back(path + ": CompressedDataSize is " + data.announced_bytes + ", but the stream has " +
-                       taken + " bytes; it is whole, and was read to its end");
+                       taken + " bytes; the stream is complete and was read to its end");
   return voxels;
 }
 

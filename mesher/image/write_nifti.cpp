@@ -138,7 +138,8 @@ void write_voxels(PendingFile& file, const LabelImage& image, std::size_t bytes)
 
 void write_nifti(const LabelImage& image, const std::string& path) {
   const bool is_compressed = path.ends_with(".nii.gz");
-  if (!is_compressed && !path.ends_with(".nii")) fail(path, "a NIfTI image ends in .nii or .nii.gz");
+  if (!is_compressed && !path.ends_with(".nii"))
+    fail(path, "the name of a NIfTI image must end in .nii or .nii.gz");
   if (*std::max_element(image.size.begin(), image.size.end()) > kLongestAxis) {
     fail(path, "NIfTI-1 holds at most " + std::to_string(kLongestAxis) + " voxels along an axis");
   }

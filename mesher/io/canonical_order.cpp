@@ -37,9 +37,9 @@ std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices
     double x;  // stored beside the id, so that nearly every comparison stays in the bucket
     VertexId id;
   };
-  constexpr std::size_t kVerticesABucket = 32, kMostBuckets = 1 << 14;
+  constexpr std::size_t kVerticesPerBucket = 32, kMostBuckets = 1 << 14;
   const auto [low, high] = normalize(vertices);
-  const std::size_t num_buckets = std::min(kMostBuckets, vertices.size() / kVerticesABucket + 1);
+  const std::size_t num_buckets = std::min(kMostBuckets, vertices.size() / kVerticesPerBucket + 1);
   // Rounding keeps the order: the larger of two numbers is never in a lower bucket.
   const double width = 0.5 * high - 0.5 * low;
   const double scale = width > 0 ? std::min(1e300, static_cast<double>(num_buckets - 1) / width) : 0;

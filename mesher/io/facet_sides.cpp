@@ -64,7 +64,7 @@ std::vector<FacetSide> find_facet_sides(const TetMesh& mesh) {
     }
   }
   for (const FacetSide& side : sides)
-    if (side.cell == FacetSide::kNoCell) throw InternalError("a facet without a cell of its second label");
+    if (side.cell == FacetSide::kNoCell) throw InternalError("a facet has no cell of its second label");
   return sides;
 }
 

@@ -86,7 +86,8 @@ class Reader {
         if (!std::isfinite(x))
           fail(fmt::format("{}: not a finite point", operation_text(operation.sequence)));
     }
-    if (num_removed != sizes.removed) fail("a batch whose operations remove another number of vertices");
+    if (num_removed != sizes.removed)
+      fail("the number of vertices that a batch removes differs from the sum over its operations");
     return true;
   }
 
@@ -115,7 +116,7 @@ class Reader {
     json.at("rank").get_to(head.rank);
     json.at("mesh_hash").get_to(head.mesh_hash);
     if (head.rank < 0 || head.rank >= head.num_ranks)
-      fail(fmt::format("there is no rank {} of {}", head.rank, head.num_ranks));
+      fail(fmt::format("rank {} of {} ranks does not exist", head.rank, head.num_ranks));
   }
 
   void take_smoothing(const nlohmann::ordered_json& json, OperationLogHead& head) const {

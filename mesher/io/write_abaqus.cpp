@@ -77,7 +77,7 @@ class AbaqusWriter {
 
   Losses write() {
     print_head();
-    tell_changed_names();
+    warn_of_changed_names();
     print_nodes();
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) print_elements(i);
     print_surfaces();
@@ -103,7 +103,7 @@ class AbaqusWriter {
   }
 
   // Reports changed names. A pair of unchanged names is joined by a dash.
-  void tell_changed_names() {
+  void warn_of_changed_names() {
     std::size_t labels = 0, surfaces = 0;
     std::string of_label, of_surface;  // the last changed name of each kind
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {
@@ -120,10 +120,10 @@ class AbaqusWriter {
       of_surface = fmt::format("'{}' is {}", name, surface_names_[i]);
     }
     if (labels > 0)
-      losses_.push_back(fmt::format("sets hold no such names as {} labels have: {}", labels, of_label));
+      losses_.push_back(fmt::format("the names of {} labels were changed for sets: {}", labels, of_label));
     if (surfaces > 0)
       losses_.push_back(
-          fmt::format("surfaces hold no such names as {} pairs of labels have: {}", surfaces, of_surface));
+          fmt::format("the names of {} pairs of labels were changed for surfaces: {}", surfaces, of_surface));
   }
 
   void print_nodes() {
@@ -136,7 +136,7 @@ class AbaqusWriter {
       text_.print(FMT_COMPILE("{}, {}, {}, {}\n"), i + 1, reals[0].view(), reals[1].view(), reals[2].view());
     }
     if (num_rounded > 0)
-      losses_.push_back(fmt::format("{} coordinates are rounded to {} characters, the most that is read",
+      losses_.push_back(fmt::format("{} coordinates are rounded to {} characters, the format's limit",
                                     num_rounded, kLongestReal));
   }
 

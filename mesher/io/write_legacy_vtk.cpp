@@ -110,7 +110,7 @@ void write_facets(const TetMesh& mesh, AtomicFile& file) {
 
 void write_legacy_vtk(const TetMesh& mesh, const std::string& path) {
   if (mesh.vertices.size() > std::size_t{std::numeric_limits<std::int32_t>::max()})
-    throw InputError(fmt::format("cannot write {}: legacy VTK numbers no more than 2^31 vertices", path));
+    throw InputError(fmt::format("cannot write {}: legacy VTK supports at most 2^31 vertices", path));
   std::deque<AtomicFile> files;
   files.emplace_back(path);
   files.emplace_back(facets_path_of(path));

@@ -72,12 +72,12 @@ struct VtuGrid {
   std::vector<VtuArray> point_data, cell_data, points, cells;  // the sections, in the file's order
 };
 
-void add_cells(std::size_t count, int vertices_a_cell, int cell_type, bool wide, VtuArray connectivity,
+void add_cells(std::size_t count, int vertices_per_cell, int cell_type, bool wide, VtuArray connectivity,
                VtuGrid& grid) {
   grid.num_cells = count;
   grid.cells.push_back(std::move(connectivity));
-  grid.cells.push_back(make_id_array("offsets", count, wide, [vertices_a_cell](std::size_t i) {
-    return (i + 1) * static_cast<std::size_t>(vertices_a_cell);
+  grid.cells.push_back(make_id_array("offsets", count, wide, [vertices_per_cell](std::size_t i) {
+    return (i + 1) * static_cast<std::size_t>(vertices_per_cell);
   }));
   grid.cells.push_back(
       make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));

@@ -85,17 +85,17 @@ std::string data_item(const std::string& file, const char* name, const std::stri
 struct GridOfXdmf {
   const char *name, *topology, *arrays, *attribute, *values;
   std::uint64_t num_cells;
-  int vertices_a_cell;
+  int vertices_per_cell;
 };
 
 std::string grid_text(const GridOfXdmf& grid, const XdmfPart& part, const std::string& file) {
-  const std::string corners = fmt::format("{} {}", grid.num_cells, grid.vertices_a_cell);
+  const std::string corners = fmt::format("{} {}", grid.num_cells, grid.vertices_per_cell);
   return fmt::format(
       "<Grid Name=\"{}\" GridType=\"Uniform\">\n"
       "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">{}</Topology>\n"
       "<Geometry GeometryType=\"XYZ\">{}</Geometry>\n"
       "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
-      grid.name, grid.topology, grid.num_cells, grid.vertices_a_cell,
+      grid.name, grid.topology, grid.num_cells, grid.vertices_per_cell,
       data_item(file, grid.arrays, corners, "Int", is_wide(part) ? 8 : 4),
       data_item(file, "points", fmt::format("{} 3", part.total_vertices), "Float", 8), grid.attribute,
       data_item(file, grid.values, fmt::format("{}", grid.num_cells), "Int", 4));

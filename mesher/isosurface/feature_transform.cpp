@@ -149,7 +149,7 @@ class FeatureWriter {
       for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
         const auto p = static_cast<unsigned>(std::countr_zero(rest));
         bits[count++] = neighborhoods.around(p).bits();
-        of_voxels[p] = Layout::kSurface | std::min(neighborhoods.label(p), Layout::kUntold);
+        of_voxels[p] = Layout::kSurface | std::min(neighborhoods.label(p), Layout::kLabelTooLarge);
       }
       to[kMaskAt] = mask;
       std::memcpy(to + kMaskAt + 1, bits.data(), count * sizeof bits[0]);

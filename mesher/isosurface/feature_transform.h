@@ -180,14 +180,14 @@ class Features {
   /// the words do not store the voxel's feature.
   double reach_mm() const { return transform_->reach_mm(); }
 
-  /// The label of v, which lies in `brick`, if v is a surface voxel; kUntold if the label does not fit in a
-  /// word.
+  /// The label of v, which lies in `brick`, if v is a surface voxel; kLabelTooLarge if the label does not fit
+  /// in a word.
   std::optional<LabelIndex> label_if_surface(Brick brick, const Voxel& v) const {
     if (brick.label() != Brick::kMixed) return std::nullopt;
     const std::uint16_t word = word_at(brick, place_in_brick(v));
-    return (word & kSurface) != 0 ? std::optional<LabelIndex>(word & kUntold) : std::nullopt;
+    return (word & kSurface) != 0 ? std::optional<LabelIndex>(word & kLabelTooLarge) : std::nullopt;
   }
-  static constexpr LabelIndex kUntold = 0x7fff;
+  static constexpr LabelIndex kLabelTooLarge = 0x7fff;
 
   /// None if `v` is not a surface voxel.
   std::optional<Neighborhood> neighborhood_if_surface(const Voxel& v) const {
@@ -212,7 +212,7 @@ class Features {
 
  private:
   friend class FeatureWriter;
-  static constexpr std::uint16_t kSurface = 0x8000;  // the other bits are the label, or kUntold
+  static constexpr std::uint16_t kSurface = 0x8000;  // the other bits are the label, or kLabelTooLarge
   static constexpr std::size_t kLineBytes = 64, kBytesOfWords = 64 * sizeof(std::uint16_t);
 
   const std::byte* bytes() const { return reinterpret_cast<const std::byte*>(words_); }

@@ -15,16 +15,16 @@ double square(double x) { return x * x; }
 double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
 
 // Exceeds 1 by more than the rounding errors.
-constexpr double kSomewhatMore = 1 + 1e-9;
+constexpr double kAboveRounding = 1 + 1e-9;
 
 }  // namespace
 
 template <class Reads>
 Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
-                      std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads)
+                      std::shared_ptr<const VoxelWeights> weights, const Reads& reads)
     : image_(&image),
       transform_(std::move(transform)),
-      strengths_(std::move(strengths)),
+      weights_(std::move(weights)),
       grid_(image, reads),
       features_(*transform_, reads),
       from_voxels_(voxels_to_working(image)),
@@ -34,7 +34,7 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
       half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
       shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})),
-      to_surface_voxel_mm_(strengths_ != nullptr ? 2 * half_diagonal_mm_ : half_diagonal_mm_),
+      to_surface_voxel_mm_(weights_ != nullptr ? 2 * half_diagonal_mm_ : half_diagonal_mm_),
       beyond_bricks_mm_(to_surface_voxel_mm_ - half_diagonal_mm_) {}
 
 // The neighborhood of v gives the corners of u's block that differ from v. If there are two labels, their
@@ -45,11 +45,12 @@ LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, 
   const Neighborhood around = features_.neighborhood(brick, v);
   const Voxel block = block_of(u);
   const CornerMask others = around.differing_corners(block.i - v.i, block.j - v.j, block.k - v.k);
-  if (own == Features<Reads>::kUntold || (others != 0 && !around.has_two_labels())) return label_by_block(u);
+  if (own == Features<Reads>::kLabelTooLarge || (others != 0 && !around.has_two_labels()))
+    return label_by_block(u);
   if (others == 0) return own;
   const Point f = u - center(block);
-  const auto [of_own, of_other] = with_strengths(block, [&](const auto& strengths) {
-    return std::pair(weight(~others & kAllCorners, f, strengths), weight(others, f, strengths));
+  const auto [of_own, of_other] = with_weights(block, [&](const auto& weights) {
+    return std::pair(weight(~others & kAllCorners, f, weights), weight(others, f, weights));
   });
   if (of_own > of_other) return own;
   const auto c = std::countr_zero(others);
@@ -60,8 +61,8 @@ LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, 
 template <class Reads>
 LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
   const Voxel block = block_of(u);
-  return with_strengths(block, [&](const auto& strengths) {
-    return winner(grid_.block(block), u - center(block), strengths).label;
+  return with_weights(block, [&](const auto& weights) {
+    return winner(grid_.block(block), u - center(block), weights).label;
   });
 }
 
@@ -70,7 +71,7 @@ LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
 template <class Reads>
 LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
   const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
-  const double diagonal_mm = 2 * half_diagonal_mm_ * kSomewhatMore;
+  const double diagonal_mm = 2 * half_diagonal_mm_ * kAboveRounding;
   if (offset && length_mm(center(*offset)) <= diagonal_mm) return label_by_block(u);
   return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
 }
@@ -108,15 +109,15 @@ double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double ra
   const double bound = brick.is_near() ? features_.reach_mm() - from_center
                                        : features_.distance_from_far(brick) - beyond_bricks_mm_;
   if (bound > radius || is_empty()) return bound;
-  const double reach = (radius + to_surface_voxel_mm_) * kSomewhatMore;
+  const double reach = (radius + to_surface_voxel_mm_) * kAboveRounding;
   return features_.is_surface_within(u, reach) ? bound : reach - to_surface_voxel_mm_;
 }
 
 // Each file that defines members instantiates its own for both oracles.
 template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
-                                 std::shared_ptr<const VoxelStrengths>, const NoReads&);
+                                 std::shared_ptr<const VoxelWeights>, const NoReads&);
 template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
-                                      std::shared_ptr<const VoxelStrengths>, const CountedReads&);
+                                      std::shared_ptr<const VoxelWeights>, const CountedReads&);
 template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
                                                            LabelIndex) const;
 template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,

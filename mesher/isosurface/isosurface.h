@@ -13,7 +13,7 @@
 // (1/2,1/2,1/2), and exceeds 1/2 elsewhere, where the label of c wins. So s is the block's center, which is
 // equally near to all corners, and some corner is a surface voxel.
 //
-// Where interfaces are smoothed, each voxel has a weight of its own (voxel_strengths.h). A block with one
+// Where interfaces are smoothed, each voxel has a weight of its own (voxel_weights.h). A block with one
 // label still has that label throughout, as all other weights are 0. An isosurface point therefore lies in a
 // block with an edge between two labels. The ends of the edge are surface voxels. The point is within *one*
 // voxel, along every axis, of their centers. Half a voxel beyond the grid, background still ties, as voxels
@@ -30,7 +30,7 @@
 #include "geometry/point.h"
 #include "isosurface/feature_transform.h"
 #include "isosurface/isosurface_block.h"
-#include "isosurface/voxel_strengths.h"
+#include "isosurface/voxel_weights.h"
 #include "podm/label_image.h"
 
 namespace podm {
@@ -59,10 +59,10 @@ struct Cover {
 template <class Reads>
 class Oracle {
  public:
-  /// Keeps a reference to `image`. `transform` is the image's; `strengths` are its voxel weights, or null if
+  /// Keeps a reference to `image`. `transform` is the image's; `weights` are its voxel weights, or null if
   /// all are 1.
   Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
-         std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads);
+         std::shared_ptr<const VoxelWeights> weights, const Reads& reads);
   const LabelImage& image() const { return *image_; }
   const FeatureTransform& transform() const { return *transform_; }
 
@@ -105,7 +105,7 @@ class Oracle {
  protected:
   const LabelImage* image_;
   std::shared_ptr<const FeatureTransform> transform_;
-  std::shared_ptr<const VoxelStrengths> strengths_;  // null if all weights are 1
+  std::shared_ptr<const VoxelWeights> weights_;  // null if all weights are 1
 
  private:
   struct LabelChange {
@@ -143,10 +143,10 @@ class Oracle {
   LabelIndex label_off_surface(const Point& u, const Voxel& v, Brick brick) const;
   /// Returns ask(weights of the block's corners).
   template <class Ask>
-  auto with_strengths(const Voxel& block, const Ask& ask) const {
-    if (strengths_ != nullptr) [[unlikely]]
-      return ask(strengths_->block(block));
-    return ask(EquallyStrong{});
+  auto with_weights(const Voxel& block, const Ask& ask) const {
+    if (weights_ != nullptr) [[unlikely]]
+      return ask(weights_->block(block));
+    return ask(UnitWeights{});
   }
   /// The nearest point of the box of all voxel centers; (0,0,0) for NaN.
   Point clamped_to_grid(const Point& u) const;
@@ -188,13 +188,13 @@ class Oracle {
 class Isosurface : public Oracle<NoReads> {
  public:
   /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
-  /// `strengths` is null unless the interfaces are smoothed. Throws InputError if the image has more than
+  /// `weights` is null unless the interfaces are smoothed. Throws InputError if the image has more than
   /// 2^31 - 1 voxels.
-  Isosurface(const LabelImage& image, int threads, std::shared_ptr<const VoxelStrengths> strengths = nullptr)
-      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), std::move(strengths), {}) {}
+  Isosurface(const LabelImage& image, int threads, std::shared_ptr<const VoxelWeights> weights = nullptr)
+      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), std::move(weights), {}) {}
   /// An oracle with the same results that counts its reads, except those of voxel weights.
   Oracle<CountedReads> counted(const CountedReads& reads) const {
-    return {*image_, transform_, strengths_, reads};
+    return {*image_, transform_, weights_, reads};
   }
 };
 
@@ -205,7 +205,7 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   const Voxel v = nearest_voxel(u);
   const Brick brick = features_.brick_of(v);
   if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
-  if (strengths_ != nullptr) [[unlikely]]
+  if (weights_ != nullptr) [[unlikely]]
     return label_off_surface(u, v, brick);
   // The lemma leaves one case in which u has another label than v, a voxel off the surface: a tie at the
   // block's center.

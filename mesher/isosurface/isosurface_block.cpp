@@ -2,24 +2,24 @@
 
 namespace podm {
 
-template <class Strengths>
-Winner winner(const BlockLabels& labels, const Point& f, const Strengths& strengths) {
+template <class Weights>
+Winner winner(const BlockLabels& labels, const Point& f, const Weights& weights) {
   const LabelIndex label = labels.corner[0];
   const CornerMask mask = labels.mask(label);
-  Winner best{label, weight(mask, f, strengths)};
+  Winner best{label, weight(mask, f, weights)};
   CornerMask rest = ~mask & kAllCorners;
   while (rest != 0) {
     const LabelIndex other = labels.first(rest);
     const CornerMask others = labels.mask(other);
-    const double w = weight(others, f, strengths);
+    const double w = weight(others, f, weights);
     if (w > best.weight || (w == best.weight && other < best.label)) best = {other, w};
     rest &= ~others;
   }
   return best;
 }
 
-template Winner winner(const BlockLabels&, const Point&, const EquallyStrong&);
-template Winner winner(const BlockLabels&, const Point&, const CornerStrengths&);
+template Winner winner(const BlockLabels&, const Point&, const UnitWeights&);
+template Winner winner(const BlockLabels&, const Point&, const CornerWeights&);
 template class LabelGrid<NoReads>;
 template class LabelGrid<CountedReads>;
 

@@ -104,11 +104,11 @@ class Trilinear {
 };
 
 /// Corners of a block that all have weight 1.
-struct EquallyStrong {
+struct UnitWeights {
   constexpr CornerValues of(CornerMask mask) const { return indicator(mask); }
 };
-/// Corners that each have a weight of their own (voxel_strengths.h).
-struct CornerStrengths {
+/// Corners that each have a weight of their own (voxel_weights.h).
+struct CornerWeights {
   CornerValues values;
 
   /// The weights of the corners in the set, and 0 elsewhere.
@@ -120,18 +120,18 @@ struct CornerStrengths {
 };
 
 /// The weight of the corners `a` minus that of the corners `b`.
-template <class Strengths = EquallyStrong>
-constexpr Trilinear weight_difference(CornerMask a, CornerMask b, const Strengths& strengths = {}) {
-  CornerValues v = strengths.of(a);
-  const CornerValues w = strengths.of(b);
+template <class Weights = UnitWeights>
+constexpr Trilinear weight_difference(CornerMask a, CornerMask b, const Weights& weights = {}) {
+  CornerValues v = weights.of(a);
+  const CornerValues w = weights.of(b);
   for (std::size_t c = 0; c < 8; ++c) v[c] -= w[c];
   return Trilinear(v);
 }
 
 /// The weight of the corners `mask` at f.
-template <class Strengths = EquallyStrong>
-double weight(CornerMask mask, const Point& f, const Strengths& strengths = {}) {
-  const CornerValues v = strengths.of(mask);
+template <class Weights = UnitWeights>
+double weight(CornerMask mask, const Point& f, const Weights& weights = {}) {
+  const CornerValues v = weights.of(mask);
   std::array<double, 4> plane;
   for (std::size_t c = 0; c < 4; ++c) plane[c] = v[c] * (1 - f.z) + v[c + 4] * f.z;
   return (plane[0] * (1 - f.x) + plane[1] * f.x) * (1 - f.y) + (plane[2] * (1 - f.x) + plane[3] * f.x) * f.y;
@@ -142,11 +142,11 @@ struct Winner {
   double weight;
 };
 /// The label of greatest weight at `f`; a tie goes to the smaller label.
-template <class Strengths = EquallyStrong>
-Winner winner(const BlockLabels& labels, const Point& f, const Strengths& strengths = {});
+template <class Weights = UnitWeights>
+Winner winner(const BlockLabels& labels, const Point& f, const Weights& weights = {});
 
-extern template Winner winner(const BlockLabels&, const Point&, const EquallyStrong&);
-extern template Winner winner(const BlockLabels&, const Point&, const CornerStrengths&);
+extern template Winner winner(const BlockLabels&, const Point&, const UnitWeights&);
+extern template Winner winner(const BlockLabels&, const Point&, const CornerWeights&);
 
 /// Labels of an image, with background outside. Keeps a reference to the voxels. `Reads` receives each part
 /// of a row that is read.

@@ -133,7 +133,7 @@ class Oracle<Reads>::Sheet {
   }
   bool recenter(const Point& u, const Voxel& block) {
     if (!oracle_.is_inside(u)) return false;
-    return recenter(nearest_voxel(u)) || (oracle_.strengths_ != nullptr && recenter_on_corner(block));
+    return recenter(nearest_voxel(u)) || (oracle_.weights_ != nullptr && recenter_on_corner(block));
   }
   bool recenter(const Voxel& v) {
     const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(v);
@@ -152,28 +152,28 @@ class Oracle<Reads>::Sheet {
   }
   // The lead in the current block if all other corners have one label.
   const Trilinear* lead_of(CornerMask others) {
-    if (oracle_.strengths_ == nullptr) return &kBalances[others];
-    lead_here_ = weight_difference(others, ~others & kAllCorners, oracle_.strengths_->block(block_));
+    if (oracle_.weights_ == nullptr) return &kBalances[others];
+    lead_here_ = weight_difference(others, ~others & kAllCorners, oracle_.weights_->block(block_));
     return &lead_here_;
   }
   // Null if more than two labels meet in the block. The lead at `at_` is then `lead_here_`.
   const Trilinear* lead_of_many(const Voxel& block, CornerMask others) {
     const BlockLabels labels = oracle_.grid_.block(block);
-    CornerMask strongest = 0;
+    CornerMask heaviest = 0;
     double greatest = -1;
     for (CornerMask rest = others; rest != 0;) {
       const CornerMask corners = labels.mask(labels.first(rest));
       if (corners == others) return lead_of(others);
       rest &= ~corners;
-      const double w = oracle_.with_strengths(
-          block, [&](const auto& strengths) { return weight(corners, at_, strengths); });
+      const double w =
+          oracle_.with_weights(block, [&](const auto& weights) { return weight(corners, at_, weights); });
       if (w > greatest) {
         greatest = w;
-        strongest = corners;
+        heaviest = corners;
       }
     }
-    lead_here_ = oracle_.with_strengths(block, [&](const auto& strengths) {
-      return weight_difference(strongest, ~others & kAllCorners, strengths);
+    lead_here_ = oracle_.with_weights(block, [&](const auto& weights) {
+      return weight_difference(heaviest, ~others & kAllCorners, weights);
     });
     return nullptr;
   }
@@ -206,13 +206,13 @@ auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Po
 // label.
 template <class Reads>
 double Oracle<Reads>::share_to_change(const Voxel& from, unsigned edge) const {
-  if (strengths_ == nullptr) return 0.5;
+  if (weights_ == nullptr) return 0.5;
   const int step = half_of(edge) > 0 ? 1 : -1;
   const std::size_t axis = axis_of(edge);
   const Voxel to{from.i + (axis == 0 ? step : 0), from.j + (axis == 1 ? step : 0),
                  from.k + (axis == 2 ? step : 0)};
-  const double strength = strengths_->strength(from);
-  return strength / (strength + strengths_->strength(to));
+  const double weight = weights_->weight(from);
+  return weight / (weight + weights_->weight(to));
 }
 
 // None if the words do not store all features: u is far from the isosurface.
@@ -318,7 +318,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
   std::optional<EightVoxels> around = features_around(u);
-  const bool is_told = around && is_inside(u);
+  const bool has_features = around && is_inside(u);
   if (!around) {
     const auto nearest = features_.nearest(u, radius + 2 * to_surface_voxel_mm_);
     if (!nearest) return std::nullopt;
@@ -326,7 +326,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
   }
   Nearest midpoint = nearest_midpoint(*around, u);
   std::optional<NearPoint> near;
-  if (is_told) {
+  if (has_features) {
     near = foot(midpoint, u, radius);
     const bool is_enough =
         midpoint.squared_mm < square(kFar * shortest_side_mm_) || (near && cover.contains(near->point));

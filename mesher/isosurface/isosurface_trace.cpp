@@ -67,8 +67,8 @@ auto Oracle<Reads>::change_in_block(const Point& from, const Vector& d, const Vo
     const LabelIndex other = labels.first(rest);
     const CornerMask others = labels.mask(other);
     rest &= ~others;
-    const auto lead = with_strengths(block, [&](const auto& strengths) {
-      return weight_difference(mask, others, strengths).along(from - center(block), d);
+    const auto lead = with_weights(block, [&](const auto& weights) {
+      return weight_difference(mask, others, weights).along(from - center(block), d);
     });
     const std::optional<double> s = first_fall(lead, label < other);
     if (s && (!first || *s < first->t)) first = LabelChange{*s, block, other};

@@ -103,7 +103,7 @@ StepResult Cavity<Locks>::add_ball(VertexId v, CellId seed, LabelIndex label) {
 }
 
 template <class Locks>
-double Cavity<Locks>::worst(const CellQuality& quality) const {
+double Cavity<Locks>::worst(const OptimizationQuality& quality) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const LocalCell& cell : vertices_) worst = std::min(worst, quality.of(points_of(cell)));
   return worst;
@@ -154,7 +154,7 @@ void Cavity<Locks>::match(const std::vector<LocalCell>& cells) {
     is_matched = sides_[i].key == sides_[i + 1].key && !(sides_[i].is_outer && sides_[i + 1].is_outer) &&
                  (i + 2 == sides_.size() || sides_[i + 1].key != sides_[i + 2].key);
   }
-  if (!is_matched) throw InternalError("a cavity was to be filled by cells of another boundary");
+  if (!is_matched) throw InternalError("the cells for a cavity have another boundary than the cavity");
 }
 
 template <class Locks>

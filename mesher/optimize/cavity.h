@@ -17,7 +17,7 @@
 #include "delaunay/mesh.h"
 #include "delaunay/pool.h"
 #include "delaunay/vertex_locks.h"
-#include "optimize/cell_quality.h"
+#include "optimize/optimization_quality.h"
 
 namespace podm {
 
@@ -70,7 +70,7 @@ class Cavity {
     return {points_[c[0]], points_[c[1]], points_[c[2]], points_[c[3]]};
   }
   /// Returns the quality of the cavity's worst cell.
-  double worst(const CellQuality& quality) const;
+  double worst(const OptimizationQuality& quality) const;
   /// Lists the facets of the cavity's cells whose other side stays, each counter-clockwise seen from inside.
   void collect_boundary(std::vector<LocalFacet>& facets) const;
 

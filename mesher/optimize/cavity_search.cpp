@@ -50,7 +50,7 @@ double determinant(const Point& a, const Point& b, const Point& c, const Point& 
 
 }  // namespace
 
-CavitySearch::CavitySearch(const CellQuality& quality)
+CavitySearch::CavitySearch(const OptimizationQuality& quality)
     : quality_(quality), known_(kKeys * (kPoints - 3) / 4), opened_(kKeys), apexes_(2 * kKeys) {}
 
 double CavitySearch::six_volumes(const LocalCell& c) const {

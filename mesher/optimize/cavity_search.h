@@ -21,7 +21,7 @@ class CavitySearch {
  public:
   static constexpr std::size_t kMaxPoints = 28;
 
-  explicit CavitySearch(const CellQuality& quality);
+  explicit CavitySearch(const OptimizationQuality& quality);
 
   /// Starts a new set of points. Until the next begin() each point has the same number in every fill().
   void begin(const LabelBound& bound);
@@ -65,7 +65,7 @@ class CavitySearch {
   bool holds_vertex(const std::array<Local, 4>& own) const;
   double six_volumes(const LocalCell& c) const;
 
-  const CellQuality& quality_;
+  const OptimizationQuality& quality_;
   std::vector<Point> points_;
   std::vector<char> is_on_boundary_;
   LabelBound bound_;

@@ -21,7 +21,7 @@ struct EdgeRing {
 
 class EdgeRemoval {
  public:
-  explicit EdgeRemoval(const CellQuality& quality) : quality_(quality) {}
+  explicit EdgeRemoval(const OptimizationQuality& quality) : quality_(quality) {}
 
   /// Finds the triangulation whose worst cell is best. Returns its quality, or 0 if each triangulation has a
   /// cell that violates a bound or is no better than `floor`. `bound` is that of the new cells.
@@ -33,7 +33,7 @@ class EdgeRemoval {
   double quality_of_triangle(unsigned i, unsigned k, unsigned j) const;
   void list_cells(const EdgeRing& ring, unsigned i, unsigned j, std::vector<LocalCell>& cells) const;
 
-  const CellQuality& quality_;
+  const OptimizationQuality& quality_;
   std::array<Point, EdgeRing::kMax> points_{};
   Point bottom_, top_;
   LabelBound bound_;

@@ -12,7 +12,7 @@ namespace podm {
 
 /// The cell of an attempt, and the label of the new cells: the cell's own, or the one that a peel gives it.
 /// The cell counts as one of that label.
-struct Subject {
+struct AttemptedCell {
   CellId cell = 0;
   LabelIndex label = kBackground;
   LabelBound bound;  // on new cells
@@ -27,15 +27,15 @@ inline double step_over(double quality) { return 1.02 * quality + 1e-4; }
 template <class Locks>
 class Flips {
  public:
-  Flips(const Mesh& mesh, const CellQuality& quality, Cavity<Locks>& cavity)
+  Flips(const Mesh& mesh, const OptimizationQuality& quality, Cavity<Locks>& cavity)
       : mesh_(mesh), quality_(quality), cavity_(cavity), edge_removal_(quality) {}
 
   /// Puts the cells around the edge into the cavity, and the vertices around it into ring_. kOutOfReach: the
   /// edge is on an interface, or has too many cells.
-  StepResult walk_ring(const Subject& subject, unsigned edge);
+  StepResult walk_ring(const AttemptedCell& attempted, unsigned edge);
   /// Finds the flip whose worst new cell is best, puts the cells that it replaces into the cavity and lists
   /// the new cells. kNotBetter: no flip makes better cells.
-  StepResult plan_best(const Subject& subject);
+  StepResult plan_best(const AttemptedCell& attempted);
   const std::vector<LocalCell>& new_cells() const { return new_cells_; }
 
  private:
@@ -52,14 +52,14 @@ class Flips {
     int depth;
   };
 
-  StepResult plan_edge(const Subject& subject, unsigned edge);
-  StepResult plan_facet(const Subject& subject, unsigned facet);
-  StepResult plan_side(const Subject& subject, const Side& side, double& quality);
-  StepResult plan_beyond(const Subject& subject, const Side& side, double& quality);
+  StepResult plan_edge(const AttemptedCell& attempted, unsigned edge);
+  StepResult plan_facet(const AttemptedCell& attempted, unsigned facet);
+  StepResult plan_side(const AttemptedCell& attempted, const Side& side, double& quality);
+  StepResult plan_beyond(const AttemptedCell& attempted, const Side& side, double& quality);
   FacetId beyond(CellId c, VertexId opposite) const;
 
   const Mesh& mesh_;
-  const CellQuality& quality_;
+  const OptimizationQuality& quality_;
   Cavity<Locks>& cavity_;
   EdgeRemoval edge_removal_;
   Best best_;

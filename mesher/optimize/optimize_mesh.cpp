@@ -8,7 +8,7 @@
 #include "optimize/interface_hash.h"
 #include "optimize/obstacles.h"
 #include "podm/errors.h"
-#include "refine/cell_quality.h"
+#include "refine/dihedral_quality.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -162,8 +162,8 @@ class Optimization {
 
   static void append(Entries&& from, Entries& to) { to.insert(to.end(), from.begin(), from.end()); }
 
-  bool is_beyond_aim(CellId c) const { return cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; }
-  bool is_beyond_bounds(CellId c) const { return cell_quality(mesh_, c, parameters_.bound) < 1; }
+  bool is_beyond_aim(CellId c) const { return dihedral_quality(mesh_, c, parameters_.aim.bounds()) < 1; }
+  bool is_beyond_bounds(CellId c) const { return dihedral_quality(mesh_, c, parameters_.bound) < 1; }
   std::uint64_t num_beyond_bounds(const Entries& cells) const {
     return static_cast<std::uint64_t>(
         std::count_if(cells.begin(), cells.end(), [&](const Entry& e) { return is_beyond_bounds(e.cell); }));

@@ -7,7 +7,7 @@
 #include "optimize/interface_hash.h"
 #include "optimize/obstacles.h"
 #include "optimize/peel.h"
-#include "refine/cell_quality.h"
+#include "refine/dihedral_quality.h"
 
 namespace podm {
 
@@ -51,7 +51,7 @@ Outcome Optimizer<Locks>::attempt_next() {
   StepResult result = cavity_.reserve(entry.cell, entry.stamp);
   if (result == StepResult::kDone) {
     ++counters_.classified_cells;
-    result = better(entry.cell);
+    result = improve(entry.cell);
   }
   if (result == StepResult::kDone) return Outcome::kCommitted;
   const Outcome outcome = outcome_of(result);
@@ -68,11 +68,11 @@ Outcome Optimizer<Locks>::attempt_next() {
 }
 
 template <class Locks>
-StepResult Optimizer<Locks>::better(CellId c) {
+StepResult Optimizer<Locks>::improve(CellId c) {
   const LabelIndex label = mesh_.label(c);
-  subject_ = {c, label, {parameters_.sizes, label}};
+  attempted_ = {c, label, {parameters_.sizes, label}};
   if (const StepResult added = cavity_.add(c); added != StepResult::kDone) return added;
-  if (pass_.is_for_cells_beyond_bound && cell_quality(mesh_, c, parameters_.bound) >= 1)
+  if (pass_.is_for_cells_beyond_bound && dihedral_quality(mesh_, c, parameters_.bound) >= 1)
     return StepResult::kNotBetter;
   using Means = OptimizationMeans;
   StepResult result = StepResult::kNotBetter;
@@ -91,28 +91,29 @@ StepResult Optimizer<Locks>::better(CellId c) {
 
 template <class Locks>
 void Optimizer<Locks>::commit(const std::vector<LocalCell>& cells, OptimizationMeans means) {
-  const CellId c = subject_.cell;
-  const std::uint64_t change = share_of_interface_hash(mesh_, c, subject_.label) -
+  const CellId c = attempted_.cell;
+  const std::uint64_t change = share_of_interface_hash(mesh_, c, attempted_.label) -
                                share_of_interface_hash(mesh_, c, mesh_.label(c));  // 0 except for a peel
-  cavity_.replace_by(cells, subject_.label, VertexKind::kCircumcenter);
+  cavity_.replace_by(cells, attempted_.label, VertexKind::kCircumcenter);
   interface_change_ += change;
   ++successes_[static_cast<std::size_t>(means)];
   counters_.cells_created += cavity_.created().size();
-  if (subject_.label == kBackground) return;
+  if (attempted_.label == kBackground) return;
   for (const CellId made : cavity_.created())
-    if (cell_quality(mesh_, made, parameters_.aim.bounds()) < 1) listed_.push_back({made, mesh_.stamp(made)});
+    if (dihedral_quality(mesh_, made, parameters_.aim.bounds()) < 1)
+      listed_.push_back({made, mesh_.stamp(made)});
 }
 
 template <class Locks>
 StepResult Optimizer<Locks>::flip(OptimizationMeans means) {
-  if (const StepResult planned = flips_.plan_best(subject_); planned != StepResult::kDone) return planned;
+  if (const StepResult planned = flips_.plan_best(attempted_); planned != StepResult::kDone) return planned;
   commit(flips_.new_cells(), means);
   return StepResult::kDone;
 }
 
 template <class Locks>
 StepResult Optimizer<Locks>::move_a_vertex() {
-  for (const VertexId v : std::array<VertexId, 4>(mesh_.cell(subject_.cell).vertices)) {
+  for (const VertexId v : std::array<VertexId, 4>(mesh_.cell(attempted_.cell).vertices)) {
     if (mesh_.vertex(v).kind != VertexKind::kCircumcenter) continue;
     const StepResult moved = move(v);
     if (moved == StepResult::kDone || moved == StepResult::kLockConflict) return moved;
@@ -124,7 +125,8 @@ StepResult Optimizer<Locks>::move_a_vertex() {
 template <class Locks>
 StepResult Optimizer<Locks>::move(VertexId v) {
   cavity_.clear();
-  if (const StepResult added = cavity_.add_ball(v, subject_.cell, subject_.label); added != StepResult::kDone)
+  if (const StepResult added = cavity_.add_ball(v, attempted_.cell, attempted_.label);
+      added != StepResult::kDone)
     return added;
   const Local center = cavity_.local_of(v);
   boundary_.clear();
@@ -135,7 +137,8 @@ StepResult Optimizer<Locks>::move(VertexId v) {
   }
   Point to = cavity_.point(center);
   const double floor = step_over(cavity_.worst(parameters_.aim));
-  if (!smoothing_.move(cavity_.points(), boundary_, subject_.bound, floor, to)) return StepResult::kNotBetter;
+  if (!smoothing_.move(cavity_.points(), boundary_, attempted_.bound, floor, to))
+    return StepResult::kNotBetter;
   const Local moved = cavity_.add_point(to);
   new_cells_.clear();
   for (const LocalFacet& f : boundary_) new_cells_.push_back({f[0], f[1], f[2], moved});
@@ -147,14 +150,14 @@ StepResult Optimizer<Locks>::move(VertexId v) {
 template <class Locks>
 StepResult Optimizer<Locks>::search(OptimizationMeans means, bool adds_vertex) {
   cavity_.clear();
-  if (const StepResult added = cavity_.add(subject_.cell); added != StepResult::kDone) return added;
+  if (const StepResult added = cavity_.add(attempted_.cell); added != StepResult::kDone) return added;
   if (adds_vertex) {
     place_candidates();
   } else {
     candidates_.assign(1, std::nullopt);
   }
-  search_.begin(subject_.bound);
-  const bool is_within = cell_quality(mesh_, subject_.cell, parameters_.bound) >= 1;
+  search_.begin(attempted_.bound);
+  const bool is_within = dihedral_quality(mesh_, attempted_.cell, parameters_.bound) >= 1;
   for (const std::size_t size :
        std::span(kSearchSizes).first(is_within ? kNumSizesWithinBounds : kSearchSizes.size())) {
     bool has_grown = false;
@@ -214,7 +217,7 @@ CellId Optimizer<Locks>::cell_beside_cavity(std::size_t max_vertices) {
     for (const FacetId mirror : mesh_.cell(cavity_.cell(i)).mirrors) {
       if (mirror == kNoFacet) continue;
       const CellId c = cell_of(mirror);
-      if (subject_.label_of(mesh_, c) != subject_.label || cavity_.has(c)) continue;
+      if (attempted_.label_of(mesh_, c) != attempted_.label || cavity_.has(c)) continue;
       const VertexId apex = mesh_.cell(c).vertices[static_cast<unsigned>(index_in_cell(mirror))];
       if (cavity_.has_vertex(apex)) return c;
       beside_.push_back({apex, c});
@@ -235,13 +238,13 @@ CellId Optimizer<Locks>::cell_beside_cavity(std::size_t max_vertices) {
 
 template <class Locks>
 StepResult Optimizer<Locks>::peel() {
-  const Subject own = subject_;
+  const AttemptedCell own = attempted_;
   for (const FacetId mirror : std::array<FacetId, 4>(mesh_.cell(own.cell).mirrors)) {
     const LabelIndex label = mirror == kNoFacet ? own.label : mesh_.label(cell_of(mirror));
     if (label == own.label) continue;
     const StepResult peeled = peel_to(label);
     if (peeled == StepResult::kDone || peeled == StepResult::kLockConflict) return peeled;
-    subject_ = own;
+    attempted_ = own;
   }
   return StepResult::kNotBetter;
 }
@@ -251,20 +254,20 @@ StepResult Optimizer<Locks>::peel() {
 // to another label is replaced in the same operation by better cells.
 template <class Locks>
 StepResult Optimizer<Locks>::peel_to(LabelIndex label) {
-  const Peel peel(mesh_, subject_.cell, label);
-  if (!may_be_peeled(mesh_, subject_.cell, peel, parameters_.delta_mm)) return StepResult::kNotBetter;
+  const Peel peel(mesh_, attempted_.cell, label);
+  if (!may_be_peeled(mesh_, attempted_.cell, peel, parameters_.delta_mm)) return StepResult::kNotBetter;
   if (peel.num_coming == 2) {
-    if (const StepResult walked = flips_.walk_ring(subject_, peel.edge()); walked != StepResult::kDone)
+    if (const StepResult walked = flips_.walk_ring(attempted_, peel.edge()); walked != StepResult::kDone)
       return walked;
   }
-  subject_ = {subject_.cell, label, {parameters_.sizes, label}};
+  attempted_ = {attempted_.cell, label, {parameters_.sizes, label}};
   if (label != kBackground) {
     const StepResult flipped = flip(OptimizationMeans::kPeels);
     if (flipped == StepResult::kDone || flipped == StepResult::kLockConflict) return flipped;
     return search(OptimizationMeans::kPeels, false);
   }
   cavity_.clear();
-  if (const StepResult added = cavity_.add(subject_.cell); added != StepResult::kDone) return added;
+  if (const StepResult added = cavity_.add(attempted_.cell); added != StepResult::kDone) return added;
   new_cells_.assign(1, cavity_.vertices(0));
   commit(new_cells_, OptimizationMeans::kPeels);
   return StepResult::kDone;

@@ -18,7 +18,7 @@
 
 #include "optimize/cavity_search.h"
 #include "optimize/flips.h"
-#include "optimize/smoothing.h"
+#include "optimize/vertex_smoothing.h"
 #include "podm/choices.h"
 #include "podm/counters.h"
 #include "refine/outcome.h"
@@ -30,8 +30,8 @@ namespace podm {
 inline constexpr std::size_t kNumMeans = Names<OptimizationMeans>::kAll.size();
 
 struct OptimizerParameters {
-  CellQuality aim;       // a cell of quality 1 is good
-  DihedralBounds bound;  // a cell whose quality by this bound is less than 1 is beyond it
+  OptimizationQuality aim;  // a cell of quality 1 is good
+  DihedralBounds bound;     // a cell whose quality by this bound is less than 1 is beyond it
   SizeField sizes;
   double delta_mm = 0;
 };
@@ -80,7 +80,7 @@ class Optimizer {
 
  private:
   Outcome attempt_next();
-  StepResult better(CellId c);
+  StepResult improve(CellId c);
   StepResult flip(OptimizationMeans means);
   StepResult move_a_vertex();
   StepResult move(VertexId v);
@@ -98,7 +98,7 @@ class Optimizer {
   WorkerId self_;
   Cavity<Locks> cavity_;
   Flips<Locks> flips_;
-  Smoothing smoothing_;
+  VertexSmoothing smoothing_;
   CavitySearch search_;
   OptimizerPass pass_;
   std::vector<Entry> listed_, given_up_, conflicts_;
@@ -107,7 +107,7 @@ class Optimizer {
   std::array<std::uint64_t, kNumMeans> successes_{};
   std::uint64_t interface_change_ = 0;
   // Data of the current attempt.
-  Subject subject_;
+  AttemptedCell attempted_;
   std::vector<LocalCell> new_cells_;
   std::vector<LocalFacet> boundary_;
   std::vector<std::pair<VertexId, CellId>> beside_;

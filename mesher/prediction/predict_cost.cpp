@@ -26,7 +26,7 @@ constexpr int kMostThreadsOfTrial = 16;  // up to this number the trial's mesh g
 constexpr double kSecondsOfAnyRun = 0.02;
 // The trial's mesh is small enough for the caches. Other runs need this factor more time for their work, as
 // measured in 32 runs.
-constexpr double kOverTrial = 1.25;
+constexpr double kRunOverTrialTime = 1.25;
 
 // The cost of a background cell, and of a square of an interface with side delta, relative to that of a cell
 // of the mesh. The factors were fitted to processor seconds of 28 runs.
@@ -88,7 +88,7 @@ Cost predict_cost(const LabelImage& image, const MeshingOptions& options) {
   cost.mesh_bytes =
       kPeakBytesPerStoredCell * cost.stored_cells + static_cast<double>(kBytesOfOutput) +
       static_cast<double>(bytes_of_threads(static_cast<std::uint64_t>(num_workers(options.team))));
-  cost.mesh_s = kSecondsOfAnyRun + kOverTrial * trial_seconds_of_work(options) *
+  cost.mesh_s = kSecondsOfAnyRun + kRunOverTrialTime * trial_seconds_of_work(options) *
                                        work_of(cost.cells, cost.stored_cells, model.squares(cost.sizes));
   return cost;
 }

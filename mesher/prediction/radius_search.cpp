@@ -31,7 +31,7 @@ RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, in
   const double least = model_.cells(at(largest_mm_));
   if (least > kErrorAllowed * static_cast<double>(asked.target_elements))
     throw InputError(fmt::format(
-        "a target of {} elements: sizes near interfaces and of single labels{} ask for some {:.0f} alone",
+        "a target of {} elements: sizes near interfaces and of single labels{} alone need about {:.0f}",
         asked.target_elements, asked.delta_mm > 0 ? ", with this delta," : "", least));
 }
 

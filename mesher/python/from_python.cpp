@@ -41,7 +41,7 @@ std::string bytes_of(const std::string& keyword, const py::handle& value, bool i
   const auto refuse = [&] {
     fail(keyword,
          is_file ? "the name of a file, without NUL or lone surrogates,"
-                 : "a text, without NUL or lone surrogates,",
+                 : "text, without NUL or lone surrogates,",
          value);
   };
   try {
@@ -160,7 +160,7 @@ void assign(std::vector<cli::NearLabels>& to, const py::handle& value, const Dec
     const py::tuple lengths = py::isinstance<py::tuple>(size) ? py::tuple(size) : py::make_tuple(size);
     bool are_lengths = lengths.size() == 1 || lengths.size() == 2;
     for (const py::handle length : lengths) are_lengths = are_lengths && is_real(length);
-    if (!are_lengths) fail(keyword, "a length in mm, or one and a width, for " + repr_of(pair), size);
+    if (!are_lengths) fail(keyword, "a length in mm, or a length and a width, for " + repr_of(pair), size);
     cli::NearLabels near{
         .labels = {label_of(keyword, pair[py::int_(0)]), label_of(keyword, pair[py::int_(1)])}};
     const std::string place = fmt::format("{} {},{}", keyword, near.labels[0], near.labels[1]);
@@ -185,7 +185,7 @@ cli::LabelRanges label_values(const std::string& keyword, const py::handle& valu
     ranges.emplace_back(number, number);
   }
   if (ranges.empty() || ranges.size() != all.size())
-    fail(keyword, "one or some label values, 0 to 2^32 - 1, as [1, 3, 4] or \"1,3-4\",", value);
+    fail(keyword, "one or several label values, 0 to 2^32 - 1, as [1, 3, 4] or \"1,3-4\",", value);
   return ranges;
 }
 
@@ -213,7 +213,7 @@ void assign(cli::MemoryLimit& to, const py::handle& value, const Declaration& of
 
 template <class Other>
 void assign(Other&, const py::handle&, const Declaration& of) {
-  throw InternalError(std::string("no keyword stands for ") + of.name);
+  throw InternalError(std::string("no keyword corresponds to ") + of.name);
 }
 
 bool is_keyword_of(const Declaration& of, OptionUse use) {

@@ -20,9 +20,9 @@
 #include "cli/reports/summary.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
-#include "python/beside_python.h"
 #include "python/from_python.h"
 #include "python/mesh_in_memory.h"
+#include "python/without_gil.h"
 #include "run/measure_quality.h"
 
 namespace podm::python {
@@ -76,10 +76,10 @@ VoxelArray voxel_array(const py::array& array) {
 py::tuple mesh(const Input& input, const py::dict& options, const py::object& progress) {
   cli::MeshCommand command = command_of(options, kInPython);
   std::shared_ptr<MeshInMemory> made;
-  const Work work = [&](const ProgressCallback& tell, const std::stop_token& stop) {
-    made = std::make_shared<MeshInMemory>(std::move(command), input, tell, stop);
+  const Work work = [&](const ProgressCallback& progress_callback, const std::stop_token& stop) {
+    made = std::make_shared<MeshInMemory>(std::move(command), input, progress_callback, stop);
   };
-  const py::object exception = run_beside_python(work, progress);
+  const py::object exception = run_without_gil(work, progress);
   return py::make_tuple(made, exception);
 }
 
@@ -103,9 +103,9 @@ std::string plan(const Input& input, const py::dict& options) {
   const WorkTimer timer(loop_threads(command.meshing.team));
   const LabelImage image = read_input(input, command, cli::memory_limit_bytes(command));
   const double read_s = timer.seconds();
-  nlohmann::ordered_json told = cli::plan_json(cli::make_plan(command, image, read_s), image);
-  told["warnings"] = image.warnings;
-  return cli::json_line(told);
+  nlohmann::ordered_json plan = cli::plan_json(cli::make_plan(command, image, read_s), image);
+  plan["warnings"] = image.warnings;
+  return cli::json_line(plan);
 }
 
 std::string plan_file(const std::string& path, const Names& names, const py::dict& options) {
@@ -182,7 +182,7 @@ std::vector<py::str> save(const MeshInMemory& made, const std::string& path, con
   {
     const py::gil_scoped_release others_run;
     check_mesh_path(path, options);
-    if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
+    if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell; no file is written");
     losses = write_mesh(made.mesh(), path, options);
   }
   return texts(losses);
@@ -194,7 +194,7 @@ void save_surfaces(const MeshInMemory& made, const std::string& path) {
 }
 
 void define_progress(py::module_& module) {
-  py::class_<Progress>(module, "Progress", "How far a run of the mesher is.")
+  py::class_<Progress>(module, "Progress", "Progress of a run of the mesher.")
       .def_readonly("phase", &Progress::phase,
                     "\"transform\", \"refine\", \"perturb\", \"optimize\", \"extract\" or \"measure\"")
       .def_readonly("fraction", &Progress::fraction, "of the phase, an estimate from 0 to 1")

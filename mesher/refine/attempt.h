@@ -99,7 +99,7 @@ template <class Locks>
 Outcome Worker<Locks>::apply_first_rule(CellId c) {
   const Examination t = rules_.examine(c);
   if (!t.is_distance_proven) ++operation_.counters().oracle_searches;
-  mesh_.tell_reliance(c, t.relies_on_others());
+  mesh_.set_relies_on_others(c, t.relies_on_others());
   if (const auto z = rules_.r1_sample(t)) {
     const Outcome sampled = insert_on_isosurface(*z, c, Rule::kR1);
     if (sampled != Outcome::kRejected) return sampled;
@@ -116,7 +116,7 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
 }
 
 template <class Locks>
-void Worker<Locks>::perturb(const DihedralBounds& bounds, std::uint64_t seed) {
+void Worker<Locks>::begin_perturbation(const DihedralBounds& bounds, std::uint64_t seed) {
   perturbation_.emplace(mesh_, isosurface_, parameters_, rules_, operation_, bounds, seed, reads_);
 }
 
@@ -125,13 +125,13 @@ Outcome Worker<Locks>::apply_r7(CellId c) {
   if (!perturbation_->is_poor(c)) return Outcome::kSound;
   if (const StepResult planned = perturbation_->plan(c); planned != StepResult::kDone) {
     operation_.rollback();
-    if (planned == StepResult::kNoMove) kept_.push_back({{c, mesh_.stamp(c)}, perturbation_->why_not()});
+    if (planned == StepResult::kNoMove) kept_.push_back({{c, mesh_.stamp(c)}, perturbation_->obstacle()});
     return outcome_of(planned);
   }
   make_room_in_log();
   operation_.commit_move();
   ++operation_.counters().moves;
-  tell_of_commit(operation_.move().point(), operation_.move().kind());
+  record_commit(operation_.move().point(), operation_.move().kind());
   return Outcome::kCommitted;
 }
 
@@ -187,12 +187,12 @@ Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
   if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
   operation_.counters().removals += operation_.removed().size();
   ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
-  tell_of_commit(p, kind);
+  record_commit(p, kind);
   return Outcome::kCommitted;
 }
 
 template <class Locks>
-void Worker<Locks>::tell_of_commit(const Point& p, VertexKind kind) {
+void Worker<Locks>::record_commit(const Point& p, VertexKind kind) {
   if (log_ != nullptr) log(p, kind);
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "refine/cell_quality.h"
+#include "refine/dihedral_quality.h"
 
 namespace podm {
 
@@ -35,7 +35,7 @@ std::optional<double> MoveJudge::quality(double least) {
   const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kGridMargin);
   double lowest = std::numeric_limits<double>::infinity();
   const bool is_good = all_of_planned([&](CellId c) {
-    const double quality = cell_quality(move_, c, bounds_);
+    const double quality = dihedral_quality(move_, c, bounds_);
     const double squared_radius =
         squared_distance(move_.cell(c).center, move_.point(move_.cell(c).vertices[3]));
     const bool has_poor_ratio = rules_.has_poor_ratio(c, squared_radius);

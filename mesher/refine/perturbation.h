@@ -46,8 +46,8 @@
 #include "delaunay/operation.h"
 #include "geometry/dihedral.h"
 #include "podm/bounds.h"
-#include "podm/perturbed.h"
-#include "refine/cell_quality.h"
+#include "podm/perturbation_report.h"
+#include "refine/dihedral_quality.h"
 #include "refine/move_judge.h"
 #include "refine/move_points.h"
 #include "refine/rules.h"
@@ -73,7 +73,7 @@ class Perturbation {
 
   /// True if the cell is inside the object and has an angle out of bounds.
   bool is_poor(CellId c) const {
-    return cell_quality(mesh_, c, bounds_) < 1 && rules_.label_of(c) != kBackground;
+    return dihedral_quality(mesh_, c, bounds_) < 1 && rules_.label_of(c) != kBackground;
   }
   bool has_free_vertex(CellId c) const {
     const auto& vertices = mesh_.cell(c).vertices;
@@ -82,10 +82,10 @@ class Perturbation {
   /// Sets the effort for the next cells.
   void set_effort(const MoveEffort& effort) { effort_ = effort; }
   /// Plans a move that improves a poor cell. kDone: the caller is to commit the move to move().point().
-  /// kNoMove: no move is accepted; why_not() gives the reason. Unless the result is kDone the caller must
+  /// kNoMove: no move is accepted; obstacle() gives the reason. Unless the result is kDone the caller must
   /// roll back.
   StepResult plan(CellId poor);
-  Unmoved why_not() const { return why_not_; }
+  Unmoved obstacle() const { return obstacle_; }
 
  private:
   struct Candidate {
@@ -117,7 +117,7 @@ class Perturbation {
   CellList beyond_;                    // scratch of keeps_samples_covered
   CellList around_;                    // scratch of is_covered
   std::vector<Candidate> candidates_;  // improved, but still with poor cells
-  Unmoved why_not_ = Unmoved::kSpacing;
+  Unmoved obstacle_ = Unmoved::kSpacing;
 };
 
 }  // namespace podm

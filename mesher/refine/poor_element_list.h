@@ -25,11 +25,11 @@ class PoorElementList {
   static constexpr std::size_t kGrowth = 3;
   /// Makes the list of one worker, for a store of `cell_capacity` cells.
   explicit PoorElementList(std::size_t cell_capacity)
-      : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
+      : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsPerEntry)) {}
   /// An upper bound of the bytes that the lists of `num_workers` workers take in addition to kGrowth entries
   /// per live cell and two chunks.
   static std::size_t stale_bytes(std::size_t cell_capacity, std::size_t num_workers) {
-    return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsAnEntry);
+    return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsPerEntry);
   }
 
   /// Throws std::bad_alloc.
@@ -85,7 +85,7 @@ class PoorElementList {
 
  private:
   // A list that is not yet due for its first cleaning is short, in a small store too.
-  static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
+  static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsPerEntry = 64;
   static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere in the store
   static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
   using Chunk = MappedChunk<Entry, kChunk>;

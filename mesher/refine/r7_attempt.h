@@ -10,7 +10,7 @@ namespace podm {
 
 template <class Locks>
 StepResult Perturbation<Locks>::plan(CellId poor) {
-  why_not_ = Unmoved::kSpacing;
+  obstacle_ = Unmoved::kSpacing;
   const std::array<VertexId, 4> vertices = mesh_.cell(poor).vertices;
   for (const VertexKind kind : {VertexKind::kCircumcenter, VertexKind::kIsosurface}) {
     for (const VertexId v : vertices) {
@@ -74,7 +74,7 @@ template <class Locks>
 double Perturbation<Locks>::least_quality_in_region(std::size_t first) {
   double least = std::numeric_limits<double>::infinity();
   for (const CellId c : operation_.region_cells().subspan(first)) {
-    const double quality = cell_quality(mesh_, c, bounds_);
+    const double quality = dihedral_quality(mesh_, c, bounds_);
     if (quality < least && rules_.label_of(c) != kBackground) least = quality;
   }
   return least;
@@ -88,11 +88,11 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   if (planned != StepResult::kDone)
     return planned == StepResult::kNotInConflict ? StepResult::kNoMove : planned;
   if (!judge_.keeps_spacing(mesh_.point(operation_.move().vertex()))) return StepResult::kNoMove;
-  why_not_ = std::max(why_not_, Unmoved::kShape);
+  obstacle_ = std::max(obstacle_, Unmoved::kShape);
   const double before = std::min(in_ball, least_quality_in_region(operation_.num_in_ball()));
   const auto quality = judge_.quality(std::min(1.0, before + kQualityStep));
   if (!quality) return StepResult::kNoMove;
-  why_not_ = Unmoved::kSurface;
+  obstacle_ = Unmoved::kSurface;
   if (*quality >= 1) return obeys_rules();
   candidates_.push_back({p, *quality});
   return StepResult::kNoMove;
@@ -114,7 +114,7 @@ StepResult Perturbation<Locks>::obeys_rules() {
 template <class Locks>
 StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
   const Examination t = judge_.examine(planned);
-  operation_.move().tell_reliance(planned, t.relies_on_others());
+  operation_.move().set_relies_on_others(planned, t.relies_on_others());
   if (const auto z = judge_.sample(t)) {
     if (const StepResult covered = is_covered(*z, planned); covered != StepResult::kDone) return covered;
   }

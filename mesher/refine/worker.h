@@ -45,7 +45,7 @@ class Worker {
   }
   /// From now on only R7 is applied, to a mesh that violates no other rule. `seed` seeds the choice of new
   /// places for vertices.
-  void perturb(const DihedralBounds& bounds, std::uint64_t seed);
+  void begin_perturbation(const DihedralBounds& bounds, std::uint64_t seed);
   Perturbation<Locks>& perturbation() { return *perturbation_; }
   /// A poor cell that R7 could not change.
   struct Kept {
@@ -115,7 +115,7 @@ class Worker {
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
   void make_room_in_log();
-  void tell_of_commit(const Point& p, VertexKind kind);
+  void record_commit(const Point& p, VertexKind kind);
   void log(const Point& p, VertexKind kind);
   void list_created();
 

@@ -32,7 +32,7 @@ class Reader {
   std::span<const std::uint32_t> removed() const {
     return {all_.removed.data() + next_removed_, next().num_removed};
   }
-  void go_on() {
+  void advance() {
     next_removed_ += next().num_removed;
     ++next_;
   }
@@ -58,7 +58,7 @@ class Merge {
   OperationBatch operator()() {
     while (const std::optional<std::uint64_t> step = next_step())
       for (Reader& rank : ranks_)
-        for (; rank.is_in(*step); rank.go_on()) carry_out(rank);
+        for (; rank.is_in(*step); rank.advance()) carry_out(rank);
     return std::move(whole_);
   }
 
@@ -80,37 +80,38 @@ class Merge {
 
   void carry_out(Reader& rank) {
     const LoggedOperation& logged = rank.next();
-    if (logged.kind == kForgottenVertex) {
-      forget(rank);
+    if (logged.kind == kReceivedRemoval) {
+      remove_received(rank);
     } else if (logged.kind == kMovedVertex) {
       move(rank);
-    } else if (logged.kind >= kLearntVertex && logged.kind < kForgottenVertex) {
-      learn(rank);
+    } else if (logged.kind >= kReceivedInsertion && logged.kind < kReceivedRemoval) {
+      insert_received(rank);
     } else {
       apply(rank);
     }
   }
 
-  void forget(Reader& rank) {
-    rank.expect(rank.removed().size() == 1, "forgets other than one vertex");
+  void remove_received(Reader& rank) {
+    rank.expect(rank.removed().size() == 1, "a received removal must name one vertex");
     const Point p = take_removed(rank, rank.removed().front());
-    rank.expect(p == point_of(rank.next()), "forgets a vertex that is elsewhere");
-    rank.expect(!vertices_.contains(p), "forgets a vertex that nobody has removed");
+    rank.expect(p == point_of(rank.next()), "a received removal names a vertex at another point");
+    rank.expect(!vertices_.contains(p), "a received removal names a vertex that no rank has removed");
   }
 
   // The vertex stays the same in the whole, where its point identifies it.
   void move(Reader& rank) {
-    rank.expect(rank.removed().size() == 1, "moves other than one vertex");
+    rank.expect(rank.removed().size() == 1, "a move must name one vertex");
     const Point p = take_removed(rank, rank.removed().front());
-    rank.expect(p == point_of(rank.next()), "moves a vertex that is elsewhere");
+    rank.expect(p == point_of(rank.next()), "moves a vertex that is at another point");
     give_number(rank);
   }
 
-  void learn(Reader& rank) {
+  void insert_received(Reader& rank) {
     const LoggedOperation& logged = rank.next();
     const auto found = vertices_.find(point_of(logged));
-    rank.expect(found != vertices_.end(), "learns of a vertex that nobody has made");
-    rank.expect(found->second.kind == logged.kind - kLearntVertex, "learns of a vertex of another kind");
+    rank.expect(found != vertices_.end(), "receives a vertex that no rank has inserted");
+    rank.expect(found->second.kind == logged.kind - kReceivedInsertion,
+                "receives a vertex of another kind than the inserted one");
     give_number(rank);
   }
 
@@ -133,14 +134,14 @@ class Merge {
 
   static Point take_removed(Reader& rank, std::uint32_t vertex) {
     const auto found = rank.vertices.find(vertex);
-    rank.expect(found != rank.vertices.end(), "removes a vertex that is not there");
+    rank.expect(found != rank.vertices.end(), "removes a vertex that does not exist");
     const Point p = found->second;
     rank.vertices.erase(found);
     return p;
   }
   static void give_number(Reader& rank) {
     const LoggedOperation& logged = rank.next();
-    rank.expect(rank.vertices.emplace(logged.vertex, point_of(logged)).second, "its vertex is there already");
+    rank.expect(rank.vertices.emplace(logged.vertex, point_of(logged)).second, "its vertex exists already");
   }
 
   std::vector<Reader> ranks_;
@@ -159,10 +160,10 @@ void expect_one_run(const std::vector<LogOfRank>& logs) {
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const auto& [path, log] = logs[i];
     if (run_of(log.head) != run_of(first.log.head))
-      throw InputError(fmt::format("{}: of another run than {}", path, first.path));
+      throw InputError(fmt::format("{}: the log is of another run than {}", path, first.path));
     if (i > 0 && log.head.rank == logs[i - 1].log.head.rank)
-      throw InputError(fmt::format("{}: of rank {} of {}, as {} is", path, log.head.rank, log.head.num_ranks,
-                                   logs[i - 1].path));
+      throw InputError(fmt::format("{}: a second log of rank {} of {}; the first is {}", path, log.head.rank,
+                                   log.head.num_ranks, logs[i - 1].path));
   }
   for (int rank = 0; rank < first.log.head.num_ranks; ++rank)
     if (const auto i = static_cast<std::size_t>(rank); i >= logs.size() || logs[i].log.head.rank != rank)

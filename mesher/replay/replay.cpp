@@ -60,13 +60,13 @@ class Replay {
     to_remove_.clear();
     for (std::uint32_t i = 0; i < logged.num_removed; ++i) {
       const auto found = vertex_of_.find(removed[i]);
-      check(found != vertex_of_.end(), "removes a vertex that is not there");
+      check(found != vertex_of_.end(), "removes a vertex that does not exist");
       to_remove_.push_back(found->second);
       vertex_of_.erase(found);
     }
     if (logged.kind == kMovedVertex) {
-      check(to_remove_.size() == 1, "moves other than one vertex");
-      check(vertex_of_.emplace(logged.vertex, to_remove_.front()).second, "its vertex is there already");
+      check(to_remove_.size() == 1, "a move must name one vertex");
+      check(vertex_of_.emplace(logged.vertex, to_remove_.front()).second, "its vertex exists already");
       return;
     }
     CellId& start = last_cell_[logged.worker];
@@ -79,11 +79,12 @@ class Replay {
     check(operation_.num_planned_removals() == to_remove_.size(),
           "removes a vertex that is not near its point");
     const auto is_kind = [&](VertexKind kind) { return logged.kind == static_cast<std::uint32_t>(kind); };
-    check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter), "its vertex is of no kind");
+    check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter),
+          "the kind of its vertex is unknown");
     const auto kind = static_cast<VertexKind>(logged.kind);
     check(operation_.commit_insertion(p, kind, kTouching) == StepResult::kDone,
           "its point is a vertex already");
-    check(vertex_of_.emplace(logged.vertex, operation_.inserted()).second, "its vertex is there already");
+    check(vertex_of_.emplace(logged.vertex, operation_.inserted()).second, "its vertex exists already");
     start = operation_.created().front();
   }
 

@@ -280,7 +280,7 @@ CellQualities qualities_of_cells(const TetMesh& mesh, int threads) {
   constexpr std::size_t kCellsAtATime = 1 << 14;
   const std::vector<double> zeros(mesh.cells.size());
   CellQualities all{zeros, zeros, zeros, zeros, zeros};
-  const auto tell = [&](std::size_t cell, const Corners& corners, CellMeasures m) {
+  const auto count = [&](std::size_t cell, const Corners& corners, CellMeasures m) {
     if (!is_positive(corners, m)) m.squared_radius = kInfinity;
     all.radius_edge[cell] = std::sqrt(m.squared_radius / m.shortest2);
     all.circumradius[cell] = std::sqrt(m.squared_radius);
@@ -290,7 +290,7 @@ CellQualities qualities_of_cells(const TetMesh& mesh, int threads) {
   };
   parallel_for_ranges(
       mesh.cells.size(), kCellsAtATime, num_threads(threads),
-      [&](std::size_t begin, std::size_t end, std::size_t) { for_each_measured(mesh, begin, end, tell); });
+      [&](std::size_t begin, std::size_t end, std::size_t) { for_each_measured(mesh, begin, end, count); });
   return all;
 }
 

@@ -71,7 +71,7 @@ MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
 
 TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space) {
   const std::unique_ptr<Mesh> refined = replay(log);
-  const Isosurface isosurface(image, 0, strengths_of(image, log.head.smoothing_mm, 0));
+  const Isosurface isosurface(image, 0, weights_of(image, log.head.smoothing_mm, 0));
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh = extract_mesh(*refined, isosurface, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);

@@ -34,7 +34,8 @@ std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& r
   std::vector<std::array<double, 2>> asked;
   if (const auto& done = report.optimization)
     asked.push_back({done->least_dihedral_deg, done->largest_dihedral_deg});
-  if (const auto& done = report.perturbed) asked.push_back({done->min_dihedral_deg, done->max_dihedral_deg});
+  if (const auto& done = report.perturbation)
+    asked.push_back({done->min_dihedral_deg, done->max_dihedral_deg});
   for (const auto& [least, largest] : asked)
     if (report.quality.min_dihedral_deg >= least + kMarginDeg &&
         report.quality.max_dihedral_deg <= largest - kMarginDeg)
@@ -65,8 +66,8 @@ void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cel
 }
 
 void PhasesOfRun::transform(MeshingReport& report) {
-  const auto strengths = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
-  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_, strengths); });
+  const auto weights = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
+  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_, weights); });
 }
 
 void PhasesOfRun::transform(MeshingReport& report,
@@ -81,14 +82,14 @@ void PhasesOfRun::transform(MeshingReport& report,
   team_.locate_memory(image_, isosurface_->transform());
 }
 
-std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report) const {
+std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) const {
   announce("smooth", 0, 0);
   const double start_s = seconds_();
   const SmoothInterfaces smoothed = smooth_interfaces(image_, options_.smoothing_mm, loop_threads_);
   report.smoothing = report_on_smoothing(image_, options_.smoothing_mm, smoothed, loop_threads_);
   if (keeps_all_stairs(image_, options_.smoothing_mm))
     report.warnings.push_back(
-        fmt::format("a blur of {:g} mm, less than half a voxel, smooths nothing", options_.smoothing_mm));
+        fmt::format("a blur of {:g} mm, below half a voxel, smooths nothing", options_.smoothing_mm));
   for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
     if (label.is_thin)
       report.warnings.push_back(fmt::format(
@@ -96,7 +97,7 @@ std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report)
           "blurred by less",
           label.value, label.voxels_mm3, options_.smoothing_mm));
   report.phases_s["smooth"] = seconds_() - start_s;
-  return smoothed.strengths;
+  return smoothed.weights;
 }
 
 void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
@@ -145,7 +146,7 @@ void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& repor
   if (options_.team.executor == Executor::kVirtual) simulate(refinement, report);
   report.num_leaves = refinement.num_leaves;
   report.schedule = std::move(refinement.schedule);
-  report.perturbed = refinement.perturbed;
+  report.perturbation = refinement.perturbation;
   team_.report_to(report, std::move(refinement.pages));
 }
 
@@ -180,7 +181,8 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   StopControl stop(
       {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
   const DihedralBounds bounds(asked.dihedral_bounds_deg[0], asked.dihedral_bounds_deg[1]);
-  const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, *size_field_, sizes_.delta_mm};
+  const OptimizerParameters parameters{OptimizationQuality(aim_over(bounds)), bounds, *size_field_,
+                                       sizes_.delta_mm};
   try {
     report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
                                         [&](double fraction) { announce("optimize", fraction, 0); });

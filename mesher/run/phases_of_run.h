@@ -52,7 +52,7 @@ class PhasesOfRun {
   using Clock = std::chrono::steady_clock;
 
   std::optional<DihedralBounds> dihedral_bounds() const;
-  std::shared_ptr<const VoxelStrengths> smooth(MeshingReport& report) const;
+  std::shared_ptr<const VoxelWeights> smooth(MeshingReport& report) const;
   void announce(const char* phase, double fraction, std::uint64_t cells) const;
   void simulate(const Refinement& refinement, MeshingReport& report) const;
 

@@ -34,17 +34,17 @@ constexpr Point place_of(unsigned corner) {
           static_cast<double>(corner >> 2)};
 }
 
-bool keeps_label(const BlockLabels& labels, const CornerStrengths& strengths, unsigned from, unsigned to) {
+bool keeps_label(const BlockLabels& labels, const CornerWeights& weights, unsigned from, unsigned to) {
   const Vector way = place_of(to) - place_of(from);
   constexpr std::array kEighths{4, 3, 5, 2, 6, 1, 7};  // most paths leave the label near the middle
   return std::all_of(kEighths.begin(), kEighths.end(), [&](int n) {
-    return winner(labels, place_of(from) + n / 8.0 * way, strengths).label == labels.corner[from];
+    return winner(labels, place_of(from) + n / 8.0 * way, weights).label == labels.corner[from];
   });
 }
 
 // Calls visit(corner, corner) for corners of one label that are joined only by a path across the block.
 template <class Visit>
-void for_each_crossing(const BlockLabels& labels, const CornerStrengths& strengths, const Visit& visit) {
+void for_each_crossing(const BlockLabels& labels, const CornerWeights& weights, const Visit& visit) {
   for (CornerMask left = kAllCorners; left != 0;) {
     const CornerMask of_label = labels.mask(labels.first(left)) & kAllCorners;
     left &= ~of_label;
@@ -53,7 +53,7 @@ void for_each_crossing(const BlockLabels& labels, const CornerStrengths& strengt
       rest &= ~piece;
       for (unsigned a = 0; a < 8; ++a)
         for (unsigned b = 0; b < 8; ++b)
-          if ((piece >> a & 1) != 0 && (rest >> b & 1) != 0 && keeps_label(labels, strengths, a, b))
+          if ((piece >> a & 1) != 0 && (rest >> b & 1) != 0 && keeps_label(labels, weights, a, b))
             visit(a, b);
     }
   }
@@ -62,7 +62,7 @@ void for_each_crossing(const BlockLabels& labels, const CornerStrengths& strengt
 using Pairs = std::vector<std::pair<Components::Id, Components::Id>>;
 
 // Pairs of components that a path across a block joins. Pairs may occur more than once.
-Pairs joined_pairs(const LabelImage& image, const VoxelStrengths& strengths, const Components& components,
+Pairs joined_pairs(const LabelImage& image, const VoxelWeights& weights, const Components& components,
                    int threads) {
   const LabelGrid<NoReads> grid(image, {});
   std::vector<Pairs> of_thread(num_threads(threads));
@@ -77,7 +77,7 @@ Pairs joined_pairs(const LabelImage& image, const VoxelStrengths& strengths, con
               return components.of({block.i + static_cast<int>(c & 1), block.j + static_cast<int>(c >> 1 & 1),
                                     block.k + static_cast<int>(c >> 2)});
             };
-            for_each_crossing(labels, strengths.block(block), [&](unsigned a, unsigned b) {
+            for_each_crossing(labels, weights.block(block), [&](unsigned a, unsigned b) {
               of_thread[thread].emplace_back(component(a), component(b));
             });
           }
@@ -91,7 +91,7 @@ struct Counts {
   std::uint64_t of_voxels = 0, smoothed = 0;
 };
 
-std::vector<Counts> count_components(const LabelImage& image, const VoxelStrengths& strengths, int threads) {
+std::vector<Counts> count_components(const LabelImage& image, const VoxelWeights& weights, int threads) {
   const Components components(image);
   std::vector<Counts> counts(image.labels.size());
   for (Components::Id c = 0; c < components.size(); ++c) {
@@ -99,7 +99,7 @@ std::vector<Counts> count_components(const LabelImage& image, const VoxelStrengt
     ++counts[components[c].label].smoothed;
   }
   boost::disjoint_sets_with_storage<> sets(components.size());
-  for (const auto& [a, b] : joined_pairs(image, strengths, components, threads)) {
+  for (const auto& [a, b] : joined_pairs(image, weights, components, threads)) {
     if (sets.find_set(a) == sets.find_set(b)) continue;
     sets.link(sets.find_set(a), sets.find_set(b));
     --counts[components[a].label].smoothed;
@@ -112,8 +112,8 @@ std::vector<Counts> count_components(const LabelImage& image, const VoxelStrengt
 SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,
                                     const SmoothInterfaces& smoothed, int threads) {
   const std::vector<std::uint64_t> voxels = count_voxels(image, threads);
-  const std::vector<double> volumes = volumes_mm3(image, *smoothed.strengths, threads);
-  const std::vector<Counts> components = count_components(image, *smoothed.strengths, threads);
+  const std::vector<double> volumes = volumes_mm3(image, *smoothed.weights, threads);
+  const std::vector<Counts> components = count_components(image, *smoothed.weights, threads);
   const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
   SmoothingReport report{.width_mm = width_mm, .labels = {}};
   for (std::size_t label = 1; label < image.labels.size(); ++label)

@@ -10,7 +10,7 @@ namespace podm {
 /// Labels are in the order of LabelImage::labels, without the background. `threads`: 0 for all cores; the
 /// report is the same for any number.
 ///
-/// Components by faces stay as they are (voxel_strengths.h). Two components that touch along an edge or at a
+/// Components by faces stay as they are (voxel_weights.h). Two components that touch along an edge or at a
 /// corner may grow together. They count as one if a straight path between two of their voxels keeps the
 /// label.
 SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,

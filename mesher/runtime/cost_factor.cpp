@@ -47,14 +47,14 @@ CostFactor CostFactor::parse(const std::string& text) {
   const std::size_t sign = text.find('=');
   CostFactor made{.name = text.substr(0, sign)};
   if (!is_known(made.name))
-    throw TopologyError(fmt::format("no constant '{}': {}", made.name, known_names()));
+    throw TopologyError(fmt::format("unknown constant '{}': {}", made.name, known_names()));
   const char* const last = text.data() + text.size();
   const char* const first = sign == std::string::npos ? last : text.data() + sign + 1;
   const auto [end, error] = std::from_chars(first, last, made.factor);
   if (error != std::errc() || end != last || !(made.factor >= 0 && made.factor <= kMostFactor))
     throw TopologyError(fmt::format("'{}' is not NAME=FACTOR with a factor from 0 to {}", text, kMostFactor));
   if (made.factor == 0 && made.name == kOfMachine.front().name)
-    throw TopologyError("cores of no speed would never end: core_speed needs a factor above 0");
+    throw TopologyError("core_speed needs a factor above 0: a run on cores of speed 0 would never end");
   return made;
 }
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string_view>
 
-#include "runtime/shortest_ways.h"
+#include "runtime/shortest_paths.h"
 #include "runtime/toml_section.h"
 
 namespace podm {
@@ -45,7 +45,7 @@ void read_cache(TomlSection& section, Processors& processors) {
   if (caches.size() == 1) return;
   const MachineModel::Cache &inner = *(caches.end() - 2), &outer = caches.back();
   if (outer.level <= inner.level || outer.latency_s <= inner.latency_s)
-    section.fail(section.place(), "caches are told from the fastest to the slowest, by level");
+    section.fail(section.place(), "caches must be listed from the fastest to the slowest, by level");
 }
 
 Processors read_processors(TomlSection section) {
@@ -77,9 +77,10 @@ int link_end(const TomlSection& section, const toml::node& node, const Network& 
   const int most = is_router ? network.num_routers : network.num_nodes;
   if ((!is_router && !text.starts_with("node ")) || error != std::errc() ||
       end != digits.data() + digits.size() || number < 0 || number >= most)
-    section.fail(node.source(), fmt::format("\"{}\" is none of the {} nodes and {} routers, which are \"node "
-                                            "0\", ... and \"router 0\", ...",
-                                            text, network.num_nodes, network.num_routers));
+    section.fail(node.source(),
+                 fmt::format("\"{}\" is not one of the {} nodes and {} routers, which are \"node "
+                             "0\", ... and \"router 0\", ...",
+                             text, network.num_nodes, network.num_routers));
   return is_router ? network.num_nodes + number : number;
 }
 
@@ -88,7 +89,7 @@ void read_link(const TomlSection& section, const toml::node& node, Network& netw
   if (ends == nullptr || ends->size() != 2)
     section.fail(node.source(), "a link is a pair such as [\"node 0\", \"router 0\"]");
   const int a = link_end(section, *ends->get(0), network), b = link_end(section, *ends->get(1), network);
-  if (a == b) section.fail(node.source(), "a link leads from an end to itself");
+  if (a == b) section.fail(node.source(), "a link connects an end to itself");
   std::vector<int>& others = network.neighbours[a];
   if (std::find(others.begin(), others.end(), b) != others.end())
     section.fail(node.source(), "a second link between these ends");
@@ -105,7 +106,7 @@ void refuse_unconnected(const TomlSection& section, const Network& network) {
   const std::vector<int> links = links_from(network.neighbours, 0);
   const auto apart = std::find(links.begin(), links.end(), -1);
   if (apart != links.end())
-    section.fail(section.place(), fmt::format("no links lead from node 0 to {}",
+    section.fail(section.place(), fmt::format("{} is not connected to node 0",
                                               name_of(network, static_cast<int>(apart - links.begin()))));
 }
 
@@ -184,7 +185,7 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
   file.done();
   if (network.num_nodes * processors.sockets * processors.cores_per_socket > kMostProcessors)
     file.fail(file.place(), fmt::format("a machine of more than {} cores", kMostProcessors));
-  const std::vector<std::vector<int>> routes = shortest_ways(network.neighbours, network.num_nodes);
+  const std::vector<std::vector<int>> routes = shortest_paths(network.neighbours, network.num_nodes);
   return {.name = name,
           .sources = sources,
           .topology = topology_of(processors, memory, network.num_nodes, routes),

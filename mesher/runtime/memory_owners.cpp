@@ -30,7 +30,7 @@ void MemoryOwners::ask(const Topology& machine, const PageQuery& query) {
     } else {
       unavailable_ =
           os_index == PageNodes::kNowhere
-              ? "a page of it is nowhere"
+              ? "a page of it has no memory yet"
               : fmt::format("a page of it is on node {}, which this process may not use", os_index);
     }
   }

@@ -42,11 +42,11 @@ std::vector<int> parse_list(std::string_view plan) {
     const std::size_t dash = piece.find('-');
     const auto first = parse_os_index(piece.substr(0, dash));
     const auto last = dash == piece.npos ? first : parse_os_index(piece.substr(dash + 1));
-    if (!first || !last) refuse_piece(plan, piece, "is no processor or range");
-    if (*last < *first) refuse_piece(plan, piece, "runs backwards");
+    if (!first || !last) refuse_piece(plan, piece, "is not a processor or a range");
+    if (*last < *first) refuse_piece(plan, piece, "has its ends in the wrong order");
     for (int os_index = *first; os_index <= *last; ++os_index) {
       if (std::count(os_indices.begin(), os_indices.end(), os_index) != 0)
-        refuse_piece(plan, piece, fmt::format("names processor {} a second time", os_index));
+        refuse_piece(plan, piece, fmt::format("repeats processor {}", os_index));
       os_indices.push_back(os_index);
     }
     begin += piece.size() + 1;
@@ -61,7 +61,7 @@ std::vector<Processor> listed_processors(const Topology& machine, const std::vec
   for (const int os_index : os_indices) {
     const auto found = by_os_index.find(os_index);
     if (found == by_os_index.end())
-      throw PlacementError(fmt::format("pin plan: there is no processor {} among the {} that can be used",
+      throw PlacementError(fmt::format("pin plan: processor {} is not one of the {} usable processors",
                                        os_index, by_os_index.size()));
     listed.push_back(found->second);
   }
@@ -105,9 +105,10 @@ std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, i
   const std::vector<Processor> order = processors_in_order(machine, plan);
   const auto num_processors = static_cast<int>(order.size());
   if (num_workers > num_processors && !oversubscribe)
-    throw PlacementError(fmt::format(
-        "{} workers, but {} {}; fewer workers, or --oversubscribe to share them", num_workers, num_processors,
-        plan.kind == PinPlan::Kind::kList ? "processors in the pin plan" : "processors that can be used"));
+    throw PlacementError(
+        fmt::format("{} workers, but {} {}; use fewer workers, or --oversubscribe to share processors",
+                    num_workers, num_processors,
+                    plan.kind == PinPlan::Kind::kList ? "processors in the pin plan" : "usable processors"));
   std::vector<Place> places;
   for (int worker = 0; worker < num_workers; ++worker) {
     const Processor& processor = order[worker % num_processors];
@@ -127,14 +128,14 @@ void bind_this_thread(const std::vector<int>& os_indices) {
     CPU_SET_S(os_index, sizeof set, set.data());
   }
   if (sched_setaffinity(0, sizeof set, set.data()) != 0)
-    throw PlacementError(fmt::format("processor {}: a thread cannot be bound to it: {}", os_indices.front(),
+    throw PlacementError(fmt::format("processor {}: cannot bind a thread to it: {}", os_indices.front(),
                                      std::strerror(errno)));
 }
 
 std::vector<int> processors_of_this_thread() {
   ProcessorSet set{};
   if (sched_getaffinity(0, sizeof set, set.data()) != 0)
-    throw PlacementError(fmt::format("the processors of a thread cannot be read: {}", std::strerror(errno)));
+    throw PlacementError(fmt::format("cannot read the processors of a thread: {}", std::strerror(errno)));
   std::vector<int> os_indices;
   for (int os_index = 0; os_index < kMaxProcessors; ++os_index)
     if (CPU_ISSET_S(os_index, sizeof set, set.data())) os_indices.push_back(os_index);

@@ -23,7 +23,7 @@ void refuse_other_letters(const std::string& text, const std::string& path) {
   const auto other = std::find_if(text.begin(), text.end(), is_other);
   if (other == text.end()) return;
   const auto line_start = std::find(std::reverse_iterator(other), text.rend(), '\n').base();
-  throw TomlError(fmt::format("{}:{}:{}: a letter that is not ASCII's", path,
+  throw TomlError(fmt::format("{}:{}:{}: a character that is not ASCII", path,
                               1 + std::count(text.begin(), other, '\n'), 1 + (other - line_start)));
 }
 
@@ -52,15 +52,15 @@ toml::table parse_ascii_toml(const std::string& path) {
   return parsed(path, [&] { return toml::parse(text.str(), path); });
 }
 
-std::string TomlSection::told(const toml::source_region& place) const {
+std::string TomlSection::location(const toml::source_region& place) const {
   return fmt::format("{}:{}:{}", path_, place.begin.line, place.begin.column);
 }
 
 void TomlSection::fail(const toml::source_region& place, const std::string& fault) const {
-  throw TomlError(told(place) + ": " + fault);
+  throw TomlError(location(place) + ": " + fault);
 }
 
-std::string TomlSection::where(std::string_view key) const { return told(place(key)); }
+std::string TomlSection::where(std::string_view key) const { return location(place(key)); }
 
 std::string TomlSection::text_of(const toml::node& node, std::string_view key) const {
   const auto value = node.value_exact<std::string>();

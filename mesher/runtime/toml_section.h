@@ -79,7 +79,7 @@ class TomlSection {
                         std::int64_t most) const;
 
  private:
-  std::string told(const toml::source_region& place) const;
+  std::string location(const toml::source_region& place) const;
   TomlSection member(std::string_view key, std::string_view name, const toml::node& node) const;
   const toml::node* find(std::string_view key);
   const toml::node& required(std::string_view key);

@@ -19,7 +19,7 @@ std::string read_text(const std::filesystem::path& path) {
   if (!file.is_open())
     throw TopologyError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
   std::ostringstream text;
-  if (!(text << file.rdbuf())) throw TopologyError(path.string() + ": holds no text");
+  if (!(text << file.rdbuf())) throw TopologyError(path.string() + ": the file is empty");
   return text.str();
 }
 
@@ -60,14 +60,14 @@ void add_latencies(hwloc_topology_t machine, const std::vector<std::uint64_t>& l
       hwloc_distances_add_values(machine, matrix, static_cast<unsigned>(num_nodes), nodes.data(),
                                  values.data(), 0) != 0 ||
       hwloc_distances_add_commit(machine, matrix, 0) != 0)
-    throw TopologyError("hwloc does not take these latencies");
+    throw TopologyError("hwloc does not accept these latencies");
 }
 
 }  // namespace
 
 Topology::Handle Topology::make_handle() {
   hwloc_topology_t machine = nullptr;
-  if (hwloc_topology_init(&machine) != 0) throw TopologyError("hwloc does not start");
+  if (hwloc_topology_init(&machine) != 0) throw TopologyError("hwloc cannot be initialised");
   return {machine, hwloc_topology_destroy};
 }
 
@@ -98,7 +98,7 @@ Topology Topology::synthetic(const std::string& description, const std::vector<s
   Handle machine = make_handle();
   if (hwloc_topology_set_synthetic(machine.get(), description.c_str()) != 0 ||
       hwloc_topology_load(machine.get()) != 0)
-    throw TopologyError(fmt::format("machine \"{}\": not a synthetic description of hwloc's", description));
+    throw TopologyError(fmt::format("machine \"{}\": not a synthetic description for hwloc", description));
   if (!latencies.empty()) add_latencies(machine.get(), latencies);
   return Topology(std::move(machine), description);
 }

@@ -65,7 +65,7 @@ InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, i
   const double reach_mm = near.width_mm + 2 * diagonal_mm(image);
   auto distances = interface_distances(image, side_of_label, reach_mm, threads);
   if (!distances)
-    throw InputError(fmt::format("size near labels {} and {}: no voxels of theirs touch",
+    throw InputError(fmt::format("size near labels {} and {}: they have no voxels that touch",
                                  text_of(near.labels[0]), text_of(near.labels[1])));
   return std::move(*distances);
 }
@@ -196,10 +196,10 @@ std::shared_ptr<const SizeGrid> make_size_grid(const LabelImage& image, const Si
     by_image.emplace(SizeGrid::Image{size_image_grid(image, sizes.image), sizes.image_factor});
     if (!by_image->radius_mm.meets(object))
       throw InputError(
-          fmt::format("{}: the size image and the object have no point in common; is it in another space?",
+          fmt::format("{}: the size image and the object do not overlap; is the size image in another space?",
                       sizes.image->path));
     if (by_image->radius_mm.range_in(object).most == 0)
-      throw InputError(fmt::format("{}: no voxel that has a size is at the object", sizes.image->path));
+      throw InputError(fmt::format("{}: no voxel with a size lies at the object", sizes.image->path));
     if (graded) bound_by_size_image(image, sizes, by_image->radius_mm, *graded);
   }
   std::vector<NearInterface> near;

@@ -17,15 +17,15 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kMostSamples = std::size_t{1} << 21;
-constexpr double kClassesAnOctave = 32;
+constexpr double kClassesPerOctave = 32;
 constexpr int kNoRadius = std::numeric_limits<int>::max();
 
 int class_of(double radius_mm) {
-  return std::isfinite(radius_mm) ? static_cast<int>(std::lround(kClassesAnOctave * std::log2(radius_mm)))
+  return std::isfinite(radius_mm) ? static_cast<int>(std::lround(kClassesPerOctave * std::log2(radius_mm)))
                                   : kNoRadius;
 }
 double radius_of(int number) {
-  return number == kNoRadius ? ScalarGrid::kNone : std::exp2(number / kClassesAnOctave);
+  return number == kNoRadius ? ScalarGrid::kNone : std::exp2(number / kClassesPerOctave);
 }
 
 constexpr int kPointsAtInterface = 8;  // per voxel; elsewhere one point per voxel

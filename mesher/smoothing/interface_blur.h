@@ -27,10 +27,10 @@ class InterfaceBlur {
   double width_mm() const { return width_mm_; }
 
   /// Scratch memory of one thread, reused from tile to tile.
-  class Desk;
+  class Scratch;
   /// Distances in mm by place in the tile, positive where the label keeps its voxel. Distances of voxels
   /// beyond the image are undefined. `first` is the tile's lowest voxel.
-  const std::array<double, kTileVoxels>& distances_mm(const Voxel& first, Desk& desk) const;
+  const std::array<double, kTileVoxels>& distances_mm(const Voxel& first, Scratch& scratch) const;
 
  private:
   // A Gaussian along one axis: taps for -reach to reach, with sum 1.
@@ -45,11 +45,11 @@ class InterfaceBlur {
   };
   using Gaussian = std::array<Taps, 3>;  // by axis
   static Gaussian gaussian(const LabelImage& image, double width_mm);
-  void read_window(const Voxel& first, Desk& desk) const;
-  void blur_rows(LabelIndex label, const Gaussian& gaussian, Desk& desk) const;
-  void blur(LabelIndex label, const Gaussian& gaussian, double factor, Desk& desk) const;
-  void weigh(LabelIndex label, Desk& desk) const;
-  void compare(LabelIndex label, Desk& desk) const;
+  void read_window(const Voxel& first, Scratch& scratch) const;
+  void blur_rows(LabelIndex label, const Gaussian& gaussian, Scratch& scratch) const;
+  void blur(LabelIndex label, const Gaussian& gaussian, double factor, Scratch& scratch) const;
+  void weigh(LabelIndex label, Scratch& scratch) const;
+  void compare(LabelIndex label, Scratch& scratch) const;
 
   const LabelImage& image_;
   double width_mm_;
@@ -58,7 +58,7 @@ class InterfaceBlur {
   std::array<int, 3> halo_{}, window_{};  // voxels around a tile; size including them
 };
 
-class InterfaceBlur::Desk {
+class InterfaceBlur::Scratch {
  private:
   friend class InterfaceBlur;
   struct Run {  // voxels of one label in a row of the window

@@ -23,10 +23,10 @@ void add_up_along(std::size_t stride, std::size_t num_blocks, std::size_t num_su
 
 }  // namespace
 
-InterfaceShift::InterfaceShift(const LabelImage& image, const VoxelStrengths& strengths,
+InterfaceShift::InterfaceShift(const LabelImage& image, const VoxelWeights& weights,
                                const std::array<int, 3>& reach)
     : image_(image),
-      strengths_(strengths),
+      weights_(weights),
       reach_(reach),
       stride_{1, image.index(0, 1, 0), image.index(0, 0, 1)} {
   const double shortest = *std::min_element(image.spacing.begin(), image.spacing.end());
@@ -47,7 +47,7 @@ InterfaceShift::Side InterfaceShift::side_of(const Voxel& v, std::size_t at) con
   const auto meet = [&](std::size_t a, std::size_t beyond) {
     if (image_.voxels[beyond] == side.label) return;
     side.area += area_of_face_[a];
-    side.lead += area_of_face_[a] * (int{strengths_.at(at)} - int{strengths_.at(beyond)});
+    side.lead += area_of_face_[a] * (int{weights_.at(at)} - int{weights_.at(beyond)});
   };
   for (std::size_t a = 0; a < 3; ++a) {
     if (place[a] > 0) meet(a, at - stride_[a]);
@@ -56,9 +56,9 @@ InterfaceShift::Side InterfaceShift::side_of(const Voxel& v, std::size_t at) con
   return side;
 }
 
-void InterfaceShift::read_window(const Voxel& first, Desk& desk) const {
-  desk.sides.clear();
-  desk.labels.clear();
+void InterfaceShift::read_window(const Voxel& first, Scratch& scratch) const {
+  scratch.sides.clear();
+  scratch.labels.clear();
   const Voxel origin{first.i - reach_[0], first.j - reach_[1], first.k - reach_[2]};
   const auto is_in_tile = [&](int at, std::size_t a) {
     return at >= reach_[a] && at < reach_[a] + kTileSide;
@@ -69,53 +69,53 @@ void InterfaceShift::read_window(const Voxel& first, Desk& desk) const {
       for (int i = begin; i < end; ++i) {
         const Voxel v{origin.i + i, origin.j + j, origin.k + k};
         const std::size_t at = image_.index(v.i, v.j, v.k);
-        if (strengths_.at(at) == VoxelStrengths::kUntold) continue;
+        if (weights_.at(at) == VoxelWeights::kUnset) continue;
         const LabelIndex label = image_.voxels[at];
         if (is_in_tile(i, 0) && is_in_tile(j, 1) && is_in_tile(k, 2) &&
-            std::find(desk.labels.begin(), desk.labels.end(), label) == desk.labels.end())
-          desk.labels.push_back(label);
+            std::find(scratch.labels.begin(), scratch.labels.end(), label) == scratch.labels.end())
+          scratch.labels.push_back(label);
         Side side = side_of(v, at);
         side.at = {i, j, k};
-        if (side.area > 0) desk.sides.push_back(side);
+        if (side.area > 0) scratch.sides.push_back(side);
       }
     }
   }
 }
 
 // Adds up the areas and leads in the box around each voxel of the tile, one axis after another.
-void InterfaceShift::add_up(LabelIndex label, Desk& desk) const {
+void InterfaceShift::add_up(LabelIndex label, Scratch& scratch) const {
   const std::array<std::size_t, 3> window{unsigned_of(window_[0]), unsigned_of(window_[1]),
                                           unsigned_of(window_[2])};
-  for (auto& sums : desk.sums) sums.assign(window[0] * window[1] * window[2], 0);
-  for (const Side& side : desk.sides) {
+  for (auto& sums : scratch.sums) sums.assign(window[0] * window[1] * window[2], 0);
+  for (const Side& side : scratch.sides) {
     if (side.label != label) continue;
-    desk.sums[0][place_in_window(side.at)] = side.area;
-    desk.sums[1][place_in_window(side.at)] = side.lead;
+    scratch.sums[0][place_in_window(side.at)] = side.area;
+    scratch.sums[1][place_in_window(side.at)] = side.lead;
   }
   constexpr std::size_t kSide = kTileSide;
   const auto count = [&](std::size_t a) { return unsigned_of(2 * reach_[a] + 1); };
-  for (auto& sums : desk.sums) {
-    add_up_along(window[0] * window[1], 1, kSide, count(2), sums, desk.along);
-    add_up_along(window[0], kSide, kSide, count(1), sums, desk.along);
-    add_up_along(1, kSide * kSide, kSide, count(0), sums, desk.along);
+  for (auto& sums : scratch.sums) {
+    add_up_along(window[0] * window[1], 1, kSide, count(2), sums, scratch.along);
+    add_up_along(window[0], kSide, kSide, count(1), sums, scratch.along);
+    add_up_along(1, kSide * kSide, kSide, count(0), sums, scratch.along);
   }
 }
 
-const std::array<double, kTileVoxels>& InterfaceShift::shifts(const Voxel& first, Desk& desk) const {
-  desk.shifts.fill(0);
-  read_window(first, desk);
-  for (const LabelIndex label : desk.labels) {
-    add_up(label, desk);
+const std::array<double, kTileVoxels>& InterfaceShift::shifts(const Voxel& first, Scratch& scratch) const {
+  scratch.shifts.fill(0);
+  read_window(first, scratch);
+  for (const LabelIndex label : scratch.labels) {
+    add_up(label, scratch);
     for (int k = 0; k < std::min(kTileSide, image_.size[2] - first.k); ++k)
       for (int j = 0; j < std::min(kTileSide, image_.size[1] - first.j); ++j)
         for (int i = 0; i < std::min(kTileSide, image_.size[0] - first.i); ++i) {
           const std::size_t at = image_.index(first.i + i, first.j + j, first.k + k);
           const std::size_t place = place_in_tile(i, j, k);
-          if (image_.voxels[at] == label && desk.sums[0][place] > 0)
-            desk.shifts[place] = desk.sums[1][place] / (2 * desk.sums[0][place]);
+          if (image_.voxels[at] == label && scratch.sums[0][place] > 0)
+            scratch.shifts[place] = scratch.sums[1][place] / (2 * scratch.sums[0][place]);
         }
   }
-  return desk.shifts;
+  return scratch.shifts;
 }
 
 }  // namespace podm

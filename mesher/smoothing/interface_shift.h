@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "image/voxel.h"
-#include "isosurface/voxel_strengths.h"
+#include "isosurface/voxel_weights.h"
 #include "podm/label_image.h"
 #include "smoothing/interface_blur.h"
 
@@ -20,14 +20,14 @@ namespace podm {
 class InterfaceShift {
  public:
   /// Averages over everything within `reach` voxels along each axis. Keeps references to `image` and
-  /// `strengths`.
-  InterfaceShift(const LabelImage& image, const VoxelStrengths& strengths, const std::array<int, 3>& reach);
+  /// `weights`.
+  InterfaceShift(const LabelImage& image, const VoxelWeights& weights, const std::array<int, 3>& reach);
 
   /// Scratch memory of one thread, reused from tile to tile.
-  class Desk;
-  /// Shifts by place in the tile, in units of 1 / VoxelStrengths::kMost, positive where the label has grown.
+  class Scratch;
+  /// Shifts by place in the tile, in units of 1 / VoxelWeights::kMost, positive where the label has grown.
   /// A shift is 0 where the weight is unset, or no face is within reach. `first` is the tile's lowest voxel.
-  const std::array<double, kTileVoxels>& shifts(const Voxel& first, Desk& desk) const;
+  const std::array<double, kTileVoxels>& shifts(const Voxel& first, Scratch& scratch) const;
 
  private:
   // A voxel with faces to other labels.
@@ -40,17 +40,17 @@ class InterfaceShift {
   using Sums = std::array<std::vector<double>, 2>;  // of areas, of leads
   std::size_t place_in_window(const Voxel& v) const;
   Side side_of(const Voxel& v, std::size_t at) const;
-  void read_window(const Voxel& first, Desk& desk) const;
-  void add_up(LabelIndex label, Desk& desk) const;
+  void read_window(const Voxel& first, Scratch& scratch) const;
+  void add_up(LabelIndex label, Scratch& scratch) const;
 
   const LabelImage& image_;
-  const VoxelStrengths& strengths_;
+  const VoxelWeights& weights_;
   std::array<int, 3> reach_, window_{};   // voxels around a tile; size including them
   std::array<std::size_t, 3> stride_{};   // of the image
   std::array<double, 3> area_of_face_{};  // of the face across each axis
 };
 
-class InterfaceShift::Desk {
+class InterfaceShift::Scratch {
  private:
   friend class InterfaceShift;
   std::vector<Side> sides;

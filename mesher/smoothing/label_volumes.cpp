@@ -21,7 +21,7 @@ std::array<Point, kPoints> points_of_block() {
 
 }  // namespace
 
-std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads) {
+std::vector<double> volumes_mm3(const LabelImage& image, const VoxelWeights& weights, int threads) {
   static const std::array<Point, kPoints> points = points_of_block();
   const LabelGrid<NoReads> grid(image, {});
   std::vector<std::vector<std::uint64_t>> counts(num_threads(threads),
@@ -36,7 +36,7 @@ std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& s
           of_thread[labels.corner[0]] += kPoints;
           continue;
         }
-        const CornerStrengths corners = strengths.block(block);
+        const CornerWeights corners = weights.block(block);
         for (const Point& f : points) ++of_thread[winner(labels, f, corners).label];
       }
     }

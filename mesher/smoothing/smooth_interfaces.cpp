@@ -54,9 +54,9 @@ double side_of_voxel_mm(const LabelImage& image) {
   return std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
 }
 
-class Smoothing {
+class InterfaceSmoother {
  public:
-  Smoothing(const LabelImage& image, double width_mm, std::size_t threads);
+  InterfaceSmoother(const LabelImage& image, double width_mm, std::size_t threads);
 
   SmoothInterfaces operator()() {
     for_each_tile([&](Tile& tile, std::size_t) { find_sides(tile); });
@@ -68,7 +68,7 @@ class Smoothing {
       blur_by(width_mm);
     }
     for (int time = 0; time < kTimesKept; ++time) keep_volumes();
-    return {strengths_, labels_lost()};
+    return {weights_, labels_lost()};
   }
 
  private:
@@ -82,20 +82,20 @@ class Smoothing {
   }
   std::uint16_t parts(double distance_mm) const {
     const double parts = std::round(std::max(distance_mm, kLeast * voxel_mm_) * parts_per_mm_);
-    return static_cast<std::uint16_t>(std::min(parts, double{VoxelStrengths::kMost}));
+    return static_cast<std::uint16_t>(std::min(parts, double{VoxelWeights::kMost}));
   }
   std::size_t index(const Voxel& v) const { return image_.index(v.i, v.j, v.k); }
   bool is_uniform(const Tile& tile) const;
   bool is_beside_another(const Voxel& v) const;
   void find_sides(Tile& tile) const;
   void blur_by(double width_mm);
-  void blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Desk& desk,
+  void blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Scratch& scratch,
                  std::vector<std::int64_t>& lead_of_kept);
   void leave_near_lost(Tile& tile, const std::array<int, 3>& reach);
   void leave_stairs(Tile& tile);
   std::array<int, 3> voxels_within(double distance_mm) const;
   template <class Visit>
-  void for_each_told(const Tile& tile, const Visit& visit) const;
+  void for_each_weighted(const Tile& tile, const Visit& visit) const;
   void keep_volumes();
   std::vector<LabelIndex> labels_lost() const;
 
@@ -105,20 +105,20 @@ class Smoothing {
   const double width_mm_, voxel_mm_, parts_per_mm_;
   std::array<int, 3> num_tiles_{};
   std::vector<Tile> tiles_;
-  std::shared_ptr<VoxelStrengths> strengths_;
+  std::shared_ptr<VoxelWeights> weights_;
   // The number of voxels, by thread and label, beside another label that the whole width keeps, minus the
   // number that it loses.
   std::vector<std::vector<std::int64_t>> lead_of_kept_;
 };
 
-Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threads)
+InterfaceSmoother::InterfaceSmoother(const LabelImage& image, double width_mm, std::size_t threads)
     : image_(image),
       grid_(image, {}),
       threads_(threads),
       width_mm_(width_mm),
       voxel_mm_(side_of_voxel_mm(image)),
-      parts_per_mm_(VoxelStrengths::kMost / std::max(kMostDistance * width_mm, kStairs * voxel_mm_)),
-      strengths_(std::make_shared<VoxelStrengths>(image.size)),
+      parts_per_mm_(VoxelWeights::kMost / std::max(kMostDistance * width_mm, kStairs * voxel_mm_)),
+      weights_(std::make_shared<VoxelWeights>(image.size)),
       lead_of_kept_(threads, std::vector<std::int64_t>(image.labels.size())) {
   for (std::size_t a = 0; a < 3; ++a) num_tiles_[a] = (image.size[a] + kTileSide - 1) / kTileSide;
   for (int k = 0; k < num_tiles_[2]; ++k)
@@ -132,7 +132,7 @@ Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threa
       }
 }
 
-bool Smoothing::is_beside_another(const Voxel& v) const {
+bool InterfaceSmoother::is_beside_another(const Voxel& v) const {
   const LabelIndex own = grid_.label(v);
   for (int k = -1; k <= 1; ++k)
     for (int j = -1; j <= 1; ++j)
@@ -142,7 +142,7 @@ bool Smoothing::is_beside_another(const Voxel& v) const {
 }
 
 // True if the tile and the voxels around it have one label. Voxels outside the grid are background.
-bool Smoothing::is_uniform(const Tile& tile) const {
+bool InterfaceSmoother::is_uniform(const Tile& tile) const {
   const Voxel low{std::max(tile.first.i - 1, 0), std::max(tile.first.j - 1, 0),
                   std::max(tile.first.k - 1, 0)};
   const Voxel end{std::min(tile.end.i + 1, image_.size[0]), std::min(tile.end.j + 1, image_.size[1]),
@@ -161,7 +161,7 @@ bool Smoothing::is_uniform(const Tile& tile) const {
   return true;
 }
 
-void Smoothing::find_sides(Tile& tile) const {
+void InterfaceSmoother::find_sides(Tile& tile) const {
   if (is_uniform(tile)) return;
   tile.for_each_voxel([&](Place place) {
     if (is_beside_another(tile.voxel(place))) tile.left.push_back(place);
@@ -170,31 +170,31 @@ void Smoothing::find_sides(Tile& tile) const {
 }
 
 // Computes the distances of all voxels that are left. Voxels near a lost voxel stay left.
-void Smoothing::blur_by(double width_mm) {
+void InterfaceSmoother::blur_by(double width_mm) {
   const InterfaceBlur blur(image_, width_mm);
-  std::vector<InterfaceBlur::Desk> desks(threads_);
+  std::vector<InterfaceBlur::Scratch> scratch(threads_);
   for_each_tile(
-      [&](Tile& tile, std::size_t thread) { blur_tile(tile, blur, desks[thread], lead_of_kept_[thread]); });
+      [&](Tile& tile, std::size_t thread) { blur_tile(tile, blur, scratch[thread], lead_of_kept_[thread]); });
   const std::array<int, 3> reach = voxels_within(kLostReach * width_mm);
   for_each_tile([&](Tile& tile, std::size_t) { leave_near_lost(tile, reach); });
 }
 
-void Smoothing::blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Desk& desk,
-                          std::vector<std::int64_t>& lead_of_kept) {
+void InterfaceSmoother::blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Scratch& scratch,
+                                  std::vector<std::int64_t>& lead_of_kept) {
   tile.lost.clear();
   if (tile.left.empty()) return;
-  const auto& distances_mm = blur.distances_mm(tile.first, desk);
+  const auto& distances_mm = blur.distances_mm(tile.first, scratch);
   for (const Place place : tile.left) {
     const double d = distances_mm[place];
     const std::size_t voxel = index(tile.voxel(place));
     const bool is_lost = d < -kLost * voxel_mm_;
     if (is_lost) tile.lost.push_back(place);
     if (blur.width_mm() == width_mm_) lead_of_kept[image_.voxels[voxel]] += is_lost ? -1 : 1;
-    strengths_->at(voxel) = parts(d);
+    weights_->at(voxel) = parts(d);
   }
 }
 
-void Smoothing::leave_near_lost(Tile& tile, const std::array<int, 3>& reach) {
+void InterfaceSmoother::leave_near_lost(Tile& tile, const std::array<int, 3>& reach) {
   if (tile.left.empty()) return;
   std::array<bool, kTileVoxels> is_near{};
   const auto mark = [&](const Voxel& lost) {
@@ -219,46 +219,46 @@ void Smoothing::leave_near_lost(Tile& tile, const std::array<int, 3>& reach) {
   std::erase_if(tile.left, [&](Place place) { return !is_near[place]; });
 }
 
-void Smoothing::leave_stairs(Tile& tile) {
-  for (const Place place : tile.left) strengths_->at(index(tile.voxel(place))) = parts(kStairs * voxel_mm_);
+void InterfaceSmoother::leave_stairs(Tile& tile) {
+  for (const Place place : tile.left) weights_->at(index(tile.voxel(place))) = parts(kStairs * voxel_mm_);
 }
 
-std::array<int, 3> Smoothing::voxels_within(double distance_mm) const {
+std::array<int, 3> InterfaceSmoother::voxels_within(double distance_mm) const {
   std::array<int, 3> voxels{};
   for (std::size_t a = 0; a < 3; ++a) voxels[a] = voxels_to_cover(distance_mm / image_.spacing[a]);
   return voxels;
 }
 
 template <class Visit>
-void Smoothing::for_each_told(const Tile& tile, const Visit& visit) const {
+void InterfaceSmoother::for_each_weighted(const Tile& tile, const Visit& visit) const {
   if (!tile.has_sides) return;
   tile.for_each_voxel([&](Place place) {
     const std::size_t voxel = index(tile.voxel(place));
-    if (strengths_->at(voxel) != VoxelStrengths::kUntold) visit(place, voxel);
+    if (weights_->at(voxel) != VoxelWeights::kUnset) visit(place, voxel);
   });
 }
 
 // Finds all new weights before any weight is changed.
-void Smoothing::keep_volumes() {
-  const InterfaceShift shift(image_, *strengths_, voxels_within(kShiftReach * width_mm_));
-  std::vector<InterfaceShift::Desk> desks(threads_);
+void InterfaceSmoother::keep_volumes() {
+  const InterfaceShift shift(image_, *weights_, voxels_within(kShiftReach * width_mm_));
+  std::vector<InterfaceShift::Scratch> scratch(threads_);
   const double least = parts(0);
   for_each_tile([&](Tile& tile, std::size_t thread) {
     const std::array<double, kTileVoxels>* shifts = nullptr;
-    for_each_told(tile, [&](Place place, std::size_t voxel) {
-      if (shifts == nullptr) shifts = &shift.shifts(tile.first, desks[thread]);
-      const double kept = std::round(strengths_->at(voxel) - (*shifts)[place]);
-      tile.kept.push_back(static_cast<std::uint16_t>(std::clamp(kept, least, double{VoxelStrengths::kMost})));
+    for_each_weighted(tile, [&](Place place, std::size_t voxel) {
+      if (shifts == nullptr) shifts = &shift.shifts(tile.first, scratch[thread]);
+      const double kept = std::round(weights_->at(voxel) - (*shifts)[place]);
+      tile.kept.push_back(static_cast<std::uint16_t>(std::clamp(kept, least, double{VoxelWeights::kMost})));
     });
   });
   for_each_tile([&](Tile& tile, std::size_t) {
     auto kept = tile.kept.begin();
-    for_each_told(tile, [&](Place, std::size_t voxel) { strengths_->at(voxel) = *kept++; });
+    for_each_weighted(tile, [&](Place, std::size_t voxel) { weights_->at(voxel) = *kept++; });
     tile.kept.clear();
   });
 }
 
-std::vector<LabelIndex> Smoothing::labels_lost() const {
+std::vector<LabelIndex> InterfaceSmoother::labels_lost() const {
   std::vector<LabelIndex> lost;
   for (std::size_t label = 1; label < image_.labels.size(); ++label) {
     std::int64_t lead = 0;
@@ -288,11 +288,11 @@ void check_width(const LabelImage& image, double width_mm) {
 
 SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads) {
   check_width(image, width_mm);
-  return Smoothing(image, width_mm, num_threads(threads))();
+  return InterfaceSmoother(image, width_mm, num_threads(threads))();
 }
 
-std::shared_ptr<const VoxelStrengths> strengths_of(const LabelImage& image, double width_mm, int threads) {
-  return width_mm > 0 ? smooth_interfaces(image, width_mm, threads).strengths : nullptr;
+std::shared_ptr<const VoxelWeights> weights_of(const LabelImage& image, double width_mm, int threads) {
+  return width_mm > 0 ? smooth_interfaces(image, width_mm, threads).weights : nullptr;
 }
 
 }  // namespace podm

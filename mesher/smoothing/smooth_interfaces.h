@@ -1,4 +1,4 @@
-// Smooths the interfaces, which are otherwise stairs of voxels: finds voxel weights (voxel_strengths.h) that
+// Smooths the interfaces, which are otherwise stairs of voxels: finds voxel weights (voxel_weights.h) that
 // place the interfaces where blurred labels tie.
 //
 // The weight of a label, its indicator w, is blurred to 2 G_s w - G_2s w, where G_s is the Gaussian of width
@@ -32,7 +32,7 @@
 #include <memory>
 #include <vector>
 
-#include "isosurface/voxel_strengths.h"
+#include "isosurface/voxel_weights.h"
 #include "podm/label_image.h"
 
 namespace podm {
@@ -45,7 +45,7 @@ void check_width(const LabelImage& image, double width_mm);
 bool keeps_all_stairs(const LabelImage& image, double width_mm);
 
 struct SmoothInterfaces {
-  std::shared_ptr<const VoxelStrengths> strengths;
+  std::shared_ptr<const VoxelWeights> weights;
   /// Labels that a blur of the whole width would have lost, in ascending order. Narrower blurs keep them.
   std::vector<LabelIndex> labels_lost;
 };
@@ -56,10 +56,10 @@ struct SmoothInterfaces {
 SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads);
 
 /// Only the weights; null for a width of 0, where nothing is smoothed.
-std::shared_ptr<const VoxelStrengths> strengths_of(const LabelImage& image, double width_mm, int threads);
+std::shared_ptr<const VoxelWeights> weights_of(const LabelImage& image, double width_mm, int threads);
 
 /// The volume of each label in an image with these voxel weights, mm^3, by index in LabelImage::labels. It is
 /// sampled at 64 points per voxel.
-std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads);
+std::vector<double> volumes_mm3(const LabelImage& image, const VoxelWeights& weights, int threads);
 
 }  // namespace podm

@@ -56,7 +56,7 @@ def judge(run, record, process):
     always = ALWAYS - ({"delaunay"} if record["optimization"] else set())
     said = f": {process.stderr.strip()[-2000:]}"
     if reason != "complete" and reason not in run.limits:
-        raise Failed(f"ended early by the {reason}, which nobody asked for{said}")
+        raise Failed(f"ended early by the {reason}, which was not requested{said}")
     if record["cells"] and not always <= set(verdicts):
         raise Failed(f"was verified for {sorted(verdicts)} only{said}")
     due = verdicts if reason == "complete" else always & set(verdicts)
@@ -94,22 +94,22 @@ def carry_out(run, folder):
     def made(*options):
         process = call(PROGRAM, "mesh", image, *run.selection, *run.options, "-o", mesh, "--record", record, "--verify",
                        "--quiet", *options, accepted=(0, 1))
-        told = json.loads(pathlib.Path(record).read_text().splitlines()[-1])
-        judge(run, told, process)
-        return told
+        summary = json.loads(pathlib.Path(record).read_text().splitlines()[-1])
+        judge(run, summary, process)
+        return summary
 
     if run.optimizes:
         made("--optimize")
-    told = made("--log", log, *leaves)
+    summary = made("--log", log, *leaves)
     call(PROGRAM, "replay", image, *run.selection, log)
-    if told["cells"] and os.path.exists(schedule):
+    if summary["cells"] and os.path.exists(schedule):
         call(VERIFIER, mesh, "--claims", "conformity", *leaves)
     written = {os.path.basename(path) for path in (image, mesh, log, record, schedule)} | {"out_facets.vtu"}
     if left := set(os.listdir(folder)) - written:
         raise Failed(f"left behind {sorted(left)}")
-    if not told["cells"] and told["stop_reason"] == "complete":
-        judge_empty(run, told["used"]["delta_mm"])
-    return "no cell" if not told["cells"] else told["stop_reason"]
+    if not summary["cells"] and summary["stop_reason"] == "complete":
+        judge_empty(run, summary["used"]["delta_mm"])
+    return "no cell" if not summary["cells"] else summary["stop_reason"]
 
 
 def fault_of(run, folder):
@@ -167,13 +167,13 @@ class Stress:
             self.counts[kind].update(names)
         if fault:
             self.failed_seeds.append(run.seed)
-            self.tell(run, fault)
+            self.report_failure(run, fault)
         if sys.stderr.isatty() or self.runs % 500 == 0:
             end = "" if sys.stderr.isatty() else "\n"
             print(f"\r{self.runs} runs in {self.seconds():.0f} s, {len(self.failed_seeds)} failed ", end=end,
                   file=sys.stderr, flush=True)
 
-    def tell(self, run, fault):
+    def report_failure(self, run, fault):
         print(f"\nseed {run.seed}, {run.image.family} ({', '.join(run.image.damages) or 'sound'}): podm mesh "
               f"{run.image_name} {shlex.join(run.selection + run.options)}\n{fault}\n"
               f"again: make stress SEED={run.seed}", file=sys.stderr)

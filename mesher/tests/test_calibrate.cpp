@@ -65,7 +65,7 @@ TEST(Calibration, PhasesAreThoseOfTheLastMeshAlone) {
   const MeshingReport report = mesh_image(noise(), exact_target(120000)).report;
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   const Calibration& calibration = report.calibration.value();
-  ASSERT_FALSE(calibration.meshes.empty()) << "nothing to tell apart";
+  ASSERT_FALSE(calibration.meshes.empty()) << "nothing to distinguish";
   EXPECT_EQ(report.phases_s.at("calibrate"), calibration.seconds);
   double meshes_s = 0;
   for (const Calibration::TrialMesh& mesh : calibration.meshes) {
@@ -85,7 +85,7 @@ TEST(Calibration, VirtualSecondsAreThoseOfTheLastMeshAlone) {
   for (const Algorithm algorithm : {Algorithm::kPodm, Algorithm::kPdr}) {
     options.algorithm = algorithm;
     const MeshingReport found = mesh_image(noise(), options).report;
-    ASSERT_FALSE(found.calibration->meshes.empty()) << "nothing to tell apart";
+    ASSERT_FALSE(found.calibration->meshes.empty()) << "nothing to distinguish";
     MeshingOptions again = options;
     again.sizes.target_elements = 0;
     again.sizes.radius_mm = found.radius_mm;

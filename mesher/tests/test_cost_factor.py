@@ -46,10 +46,10 @@ class CostFactor(PodmTestCase):
         for arguments in (["--executor", "virtual"], ["--topology", BLACKLIGHT]):
             process = self.run_with("--cost-factor", "wake=2", "--oversubscribe", *arguments)
             self.assert_exit(process, 2)
-            self.assertIn("--cost-factor needs", process.stderr)
+            self.assertIn("--cost-factor requires", process.stderr)
         process = self.run_with("--executor", "virtual", "--topology", BLACKLIGHT, "--cost-factor", "speed=2")
         self.assert_exit(process, 2)
-        self.assertIn("no constant 'speed'", process.stderr)
+        self.assertIn("unknown constant 'speed'", process.stderr)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,8 @@ class Crossover(PodmTestCase):
     def mesh(self, *arguments):
         """Returns the record of a run."""
         runs = self.folder / "runs.jsonl"
-        process = run_podm("mesh", IMAGE, "--radius", 20, "--oversubscribe", "-o", self.out, "--record", runs, *arguments)
+        process = run_podm("mesh", IMAGE, "--radius", 20, "--oversubscribe", "-o", self.out, "--record", runs,
+                           *arguments)
         self.assert_exit(process, 0)
         return json.loads(runs.read_text().splitlines()[-1])
 

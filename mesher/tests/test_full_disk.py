@@ -63,12 +63,12 @@ class FileSizeLimit(PodmTestCase):
 ON_A_SMALL_DISK = """
 mount -t tmpfs -o size=1m podm_test . && cd "$PWD" || exit 99
 for name in $NAMES; do printf "%4090s\\n" "older $name" > $name; done  # a page
-head -c 2m /dev/zero > filler 2> ../told/filling
+head -c 2m /dev/zero > filler 2> ../outcome/filling
 truncate -s -$ROOM filler
-"$@" > ../told/stdout 2> ../told/stderr
-echo $? > ../told/code
+"$@" > ../outcome/stdout 2> ../outcome/stderr
+echo $? > ../outcome/code
 rm filler
-tar -c . > ../told/disk.tar
+tar -c . > ../outcome/disk.tar
 """
 
 
@@ -91,18 +91,18 @@ class SmallDisk(PodmTestCase):
         self.image = small_images.write_nifti(self.folder / "ball.nii", BALL)
 
     def assert_refused_on_a_disk_with(self, room, names, arguments, refused):
-        disk, told = self.folder / "disk", self.folder / "told"
-        for folder in disk, told:
+        disk, outcome = self.folder / "disk", self.folder / "outcome"
+        for folder in disk, outcome:
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
         process = subprocess.run([*self.unshare, "sh", "-c", ON_A_SMALL_DISK, "sh", PROGRAM, *map(str, arguments)],
                                  cwd=disk, env={**os.environ, "NAMES": " ".join(names), "ROOM": str(room)},
                                  capture_output=True, text=True, timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 0, process.stderr)
-        stderr = (told / "stderr").read_text()
-        self.assertEqual((told / "code").read_text(), "2\n", stderr)
+        stderr = (outcome / "stderr").read_text()
+        self.assertEqual((outcome / "code").read_text(), "2\n", stderr)
         self.assertIn(f"cannot write {refused}: No space left on device", stderr)
-        with tarfile.open(fileobj=io.BytesIO((told / "disk.tar").read_bytes())) as archive:
+        with tarfile.open(fileobj=io.BytesIO((outcome / "disk.tar").read_bytes())) as archive:
             left = {pathlib.Path(member.name).name: archive.extractfile(member).read().decode()
                     for member in archive if member.isfile()}
         self.assertEqual(left, {name: f"{'older ' + name:>4090}\n" for name in names})

@@ -83,4 +83,4 @@ class Hops(PodmTestCase):
         self.assertEqual(record["hops"], "unavailable: one NUMA node or one thread")
         self.assertEqual(record["hops_by_kind"], record["hops"])
         self.assertEqual(record["workers"][0]["hops_by_kind"], record["hops"])
-        self.assertEqual(self.mesh_on_blades()["pages"], "unavailable: the machine is a described one")
+        self.assertEqual(self.mesh_on_blades()["pages"], "unavailable: the machine is described by a file")

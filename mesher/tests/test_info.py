@@ -45,7 +45,7 @@ class Info(PodmTestCase):
         dropped = self.info("phantom:abdomen@48", "--drop", str(second))
         self.assertEqual({label["value"] for label in dropped["labels"]}, set(everything) - {second})
 
-    def test_text_tells_the_same(self):
+    def test_text_has_the_same(self):
         info = self.info("phantom:spheres@24")
         process = run_podm("info", "phantom:spheres@24")
         self.assert_exit(process, 0)
@@ -65,7 +65,7 @@ class Info(PodmTestCase):
         small_images.write_nifti(path, bytes([3, 4] * 864))
         self.assertNotIn("no background", run_podm("info", path, "--background", "3").stdout)
 
-    def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
+    def test_a_meta_image_with_an_old_stream_size_in_its_header_is_read_with_a_warning(self):
         path = self.folder / "stale.mha"
         voxels = small_images.ball_voxels(12)
         small_images.write_metaimage(path, voxels, compressed_size=7)

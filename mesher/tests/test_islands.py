@@ -88,7 +88,7 @@ class Islands(PodmTestCase):
                 gone = set(voxels.values()) - set(expected.values()) - {0}
                 self.assertEqual(len(warnings), len(gone))
                 for label in gone:
-                    self.assertTrue(any(f"label {label} is dropped whole" in text for text in warnings))
+                    self.assertTrue(any(f"label {label} is dropped entirely" in text for text in warnings))
                 again = self.volumes(self.image(expected, "b.nii"), "--drop-islands", below_mm3)
                 self.assertEqual(again, (dict(counts), []))
 
@@ -103,9 +103,9 @@ class Islands(PodmTestCase):
             record = self.read_record(records)
             self.assertEqual(record["options"]["labels"]["drop_islands_mm3"], 4)
             small = [found for found in components(voxels) if len(found) < 4]
-            told = {of["value"]: of for of in record["dropped_islands"]}
-            self.assertEqual(set(told), {voxels[min(found)] for found in small})
-            self.assertGreaterEqual(sum(of["islands"] for of in told.values()), len(small))
+            reported = {of["value"]: of for of in record["dropped_islands"]}
+            self.assertEqual(set(reported), {voxels[min(found)] for found in small})
+            self.assertGreaterEqual(sum(of["islands"] for of in reported.values()), len(small))
             self.assert_exit(run_podm("replay", path, log, *options), 0)
             self.assert_refused(["replay", path, log], "another image")
 

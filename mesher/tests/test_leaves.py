@@ -72,13 +72,13 @@ class Leaves(PodmTestCase):
 
     def test_options_that_do_not_go_together_are_refused(self):
         for arguments, word in ((["--algorithm", "pdr", "--cores-per-node", "2"], "pdr"),
-                                (["--algorithm", "pdr-podm", "--nodes", "3", "--threads", "4"], "evenly"),
+                                (["--algorithm", "pdr-podm", "--nodes", "3", "--threads", "4"], "divide"),
                                 (["--algorithm", "pdr-podm", "--nodes", "2", "--cores-per-node", "3", "--threads", "4"],
                                  "threads"),
                                 (["--algorithm", "pdr", "--initial-ratio", "0.5"], "ratio"),
                                 (["--algorithm", "pdr", "--initial-threads", "9"], "initial"),
                                 (["--algorithm", "pdr", "--leaf-size", "-1"], "--leaf-size"),
-                                (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm makes"),
+                                (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm gives"),
                                 (["--schedule", self.schedule], "podm has no leaves"),
                                 (["--algorithm", "podm-home", "--schedule", self.schedule], "podm-home has no leaves"),
                                 (["--algorithm", "auto", "--schedule", self.schedule], "auto has no leaves"),

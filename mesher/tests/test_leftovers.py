@@ -145,7 +145,7 @@ class Verification(PodmTestCase):
         self.assertEqual(set(self.read_record(runs)["verdicts"].values()), {"pass"})
         self.assertEqual(self.names(), self.MESH | {"runs.jsonl"})
 
-    def test_a_verifier_that_is_not_there_is_told_of_before_there_is_a_mesh(self):
+    def test_a_missing_verifier_is_reported_before_there_is_a_mesh(self):
         alone = self.folder / "podm"
         shutil.copy(PROGRAM, alone)
         process = run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", "--verify", program=alone)
@@ -230,7 +230,7 @@ class Record(PodmTestCase):
         os.mkfifo(self.runs)
         process = self.mesh(self.runs)
         self.assert_exit(process, 2)
-        self.assertIn(f"cannot write {self.runs}: nobody reads it", process.stderr)
+        self.assertIn(f"cannot write {self.runs}: the pipe has no reader", process.stderr)
         self.assertEqual(list(self.folder.iterdir()), [self.runs])
 
     def test_a_pipe_with_a_reader_standard_output_and_the_null_device(self):

@@ -37,12 +37,12 @@ class MemoryLimit(PodmTestCase):
                            record, "--quiet", *(["--verify"] if gib < 0.06 else []), **popen_options)
         self.assert_exit(process, 1)
         self.assertIn("memory limit", process.stderr)
-        told = self.read_record(record)
-        self.assertEqual(told["stop_reason"], "memory limit")
-        if told["verdicts"]:
-            self.assertEqual([told["verdicts"][claim] for claim in ("structure", "delaunay")], ["pass", "pass"])
-        self.assertLessEqual(told["peak_rss_bytes"] / GIB / gib, 1)
-        self.assertGreater(told["peak_rss_bytes"] / GIB / gib, 0.5, "what is granted is used")
+        run = self.read_record(record)
+        self.assertEqual(run["stop_reason"], "memory limit")
+        if run["verdicts"]:
+            self.assertEqual([run["verdicts"][claim] for claim in ("structure", "delaunay")], ["pass", "pass"])
+        self.assertLessEqual(run["peak_rss_bytes"] / GIB / gib, 1)
+        self.assertGreater(run["peak_rss_bytes"] / GIB / gib, 0.5, "what is granted is used")
 
     def test_many_workers_leave_little_of_the_store_unused(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
@@ -50,10 +50,10 @@ class MemoryLimit(PodmTestCase):
         process = run_podm("mesh", image, *TOO_FEW, "--max-memory-gib", 0.2, "--executor", "virtual", "--threads", 512,
                            "-o", self.folder / "out.vtu", "--record", record, "--quiet")
         self.assert_exit(process, 1)
-        told = self.read_record(record)
-        self.assertEqual(told["stop_reason"], "memory limit")
-        self.assertGreater(told["cells"], 150_000)
-        self.assertLessEqual(told["peak_rss_bytes"] / GIB / 0.2, 1)
+        run = self.read_record(record)
+        self.assertEqual(run["stop_reason"], "memory limit")
+        self.assertGreater(run["cells"], 150_000)
+        self.assertLessEqual(run["peak_rss_bytes"] / GIB / 0.2, 1)
 
     # Each thread has an arena of the allocator on machines with many processors.
     def test_threads_are_charged_with_what_they_take(self):
@@ -81,7 +81,7 @@ class MemoryLimit(PodmTestCase):
         options = ["--target-elements", 1000, "--delta", 0.2]
         for gib in 0.055, 0.065:
             self.assert_refused(["mesh", image, *options, "--max-memory-gib", gib, "-o", self.folder / "out.vtu"],
-                                image, "while they are read", "no room", "GiB")
+                                image, "during reading", "room for only", "GiB")
         self.check(image, 0.08, [], options)
 
     def test_readers_of_all_formats_look_at_the_limit_before_they_read(self):
@@ -96,12 +96,12 @@ class MemoryLimit(PodmTestCase):
         for name in "a.inr", "a.nrrd", "a.mha", "zipped.mha", "a.nii":
             with self.subTest(name=name):
                 self.assert_refused(["mesh", self.folder / name, *TOO_FEW, "--max-memory-gib", 0.018,
-                                     "-o", self.folder / "out.vtu"], name, "while they are read")
+                                     "-o", self.folder / "out.vtu"], name, "during reading")
 
     def test_a_limit_that_the_image_itself_takes_is_refused(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
         self.assert_refused(["mesh", image, *TOO_FEW, "--max-memory-gib", 0.01, "-o", self.folder / "out.vtu"],
-                            image, "GiB", "no room")
+                            image, "GiB", "room for only")
 
     def test_more_cells_than_can_be_numbered_are_refused_before(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))

@@ -27,14 +27,14 @@ class LogsOfRanks : public testing::Test {
       logs_.back().log.head = {{0, 0, 0, 9, 9, 9}, "image", "RAS", "", "cafe", rank, 3};
       for (std::uint32_t i = 0; i < 3; ++i) {
         if (rank == 0) add(rank, at(0, i), 1 + i, 8 + i);
-        if (rank > 0) learn(rank, at(1, i), 1 + i, 8 + i);
+        if (rank > 0) receive_insertion(rank, at(1, i), 1 + i, 8 + i);
       }
     }
     add(0, at(2, 0), 4, 8, {8});
     add(0, at(2, 1), 1, 11);
     add(1, at(2, 0), 5, 11, {10});
-    learn(2, at(3, 0), 5, 11);
-    forget(2, at(3, 1), 3, 10);
+    receive_insertion(2, at(3, 0), 5, 11);
+    receive_removal(2, at(3, 1), 3, 10);
     add(1, at(4, 0), 6, 12, {8, 11});
   }
 
@@ -45,11 +45,12 @@ class LogsOfRanks : public testing::Test {
         {sequence, {x, 0.5, 0.5}, vertex, 1, kind, static_cast<std::uint32_t>(removed.size())});
     all.removed.insert(all.removed.end(), removed.begin(), removed.end());
   }
-  void learn(int rank, std::uint64_t sequence, double x, std::uint32_t vertex, std::uint32_t kind = kFree) {
-    add(rank, sequence, x, vertex, {}, kLearntVertex + kind);
+  void receive_insertion(int rank, std::uint64_t sequence, double x, std::uint32_t vertex,
+                         std::uint32_t kind = kFree) {
+    add(rank, sequence, x, vertex, {}, kReceivedInsertion + kind);
   }
-  void forget(int rank, std::uint64_t sequence, double x, std::uint32_t vertex) {
-    add(rank, sequence, x, vertex, {vertex}, kForgottenVertex);
+  void receive_removal(int rank, std::uint64_t sequence, double x, std::uint32_t vertex) {
+    add(rank, sequence, x, vertex, {vertex}, kReceivedRemoval);
   }
   OperationBatch& log(int rank) { return logs_[static_cast<std::size_t>(rank)].log.all; }
 
@@ -90,7 +91,7 @@ TEST_F(LogsOfRanks, FollowVerticesThatMove) {
 
 TEST_F(LogsOfRanks, AreRefusedWithAVertexThatMovesFromElsewhere) {
   add(2, at(5, 0), 3, 7, {9}, kMovedVertex);
-  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is elsewhere");
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is at another point");
 }
 
 TEST_F(LogsOfRanks, AreOneMachinesAsTheyAre) {
@@ -109,10 +110,10 @@ TEST_F(LogsOfRanks, AreAllNeededOnce) {
   EXPECT_EQ(fault(), "log.0: the log of rank 2 of 3 is missing");
   logs_ = {all[0], all[1], all[2], all[1]};
   logs_.back().path = "copy";
-  EXPECT_EQ(fault(), "copy: of rank 1 of 3, as log.1 is");
+  EXPECT_EQ(fault(), "copy: a second log of rank 1 of 3; the first is log.1");
   logs_ = all;
   logs_[1].log.head.mesh_hash = "f00d";
-  EXPECT_EQ(fault(), "log.1: of another run than log.0");
+  EXPECT_EQ(fault(), "log.1: the log is of another run than log.0");
 }
 
 TEST_F(LogsOfRanks, MayLackAMeshThatWasNotFinished) {
@@ -132,29 +133,30 @@ TEST_F(LogsOfRanks, LearnWhatIsSo) {
   using Operations = std::vector<LoggedOperation>&;
   EXPECT_EQ(fault_after([](Operations) {}), "no error");
   EXPECT_EQ(fault_after([](Operations all) { all[3].point[0] = std::nextafter(5, 6); }),
-            "log.2: operation 0 of step 3: learns of a vertex that nobody has made");
+            "log.2: operation 0 of step 3: receives a vertex that no rank has inserted");
   EXPECT_EQ(fault_after([](Operations all) { all[3].kind -= 1; }),
-            "log.2: operation 0 of step 3: learns of a vertex of another kind");
+            "log.2: operation 0 of step 3: receives a vertex of another kind than the inserted one");
   EXPECT_EQ(fault_after([](Operations all) { all[3].vertex = 9; }),
-            "log.2: operation 0 of step 3: its vertex is there already");
+            "log.2: operation 0 of step 3: its vertex exists already");
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(2, 0); }), "no error");  // after rank 1
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(5, 0), std::swap(all[3], all[4]); }),
             // The vertex no longer exists.
-            "log.2: operation 0 of step 5: learns of a vertex that nobody has made");
+            "log.2: operation 0 of step 5: receives a vertex that no rank has inserted");
   EXPECT_EQ(fault_after([](Operations all) { all[4].point[0] = 2; }),
-            "log.2: operation 1 of step 3: forgets a vertex that is elsewhere");
+            "log.2: operation 1 of step 3: a received removal names a vertex at another point");
 }
 
 TEST_F(LogsOfRanks, ForgetAndRemoveWhatIsSo) {
   const std::vector<LogOfRank> logs = logs_;
-  forget(0, at(5, 0), 2, 9);
-  EXPECT_EQ(fault(), "log.0: operation 0 of step 5: forgets a vertex that nobody has removed");
+  receive_removal(0, at(5, 0), 2, 9);
+  EXPECT_EQ(fault(),
+            "log.0: operation 0 of step 5: a received removal names a vertex that no rank has removed");
   logs_ = logs;
   add(2, at(5, 0), 7, 12, {8});
   EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that another rank has removed");
   logs_ = logs;
   add(2, at(5, 0), 7, 12, {10});
-  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that is not there");
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that does not exist");
   logs_ = logs;
   add(2, at(5, 0), 2, 12);
   EXPECT_EQ(fault(), "log.2: operation 0 of step 5: its point is a vertex already");

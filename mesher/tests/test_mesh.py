@@ -155,7 +155,7 @@ class Mesh(PodmTestCase):
                 self.assertEqual(again["mesh_sha256"], record["mesh_sha256"])
                 self.assertIsNone(again["calibration"])
 
-    def test_vertices_move_for_dihedral_angles_and_the_record_tells(self):
+    def test_vertices_move_for_dihedral_angles_and_the_record_says_so(self):
         self.assert_exit(self.mesh("--radius", "6", image="phantom:abdomen@48"), 0)
         process = self.mesh("--radius", "6", "--min-dihedral", "8", "--verify", image="phantom:abdomen@48")
         self.assert_exit(process, 0)
@@ -163,12 +163,12 @@ class Mesh(PodmTestCase):
         self.assertEqual(set(record["verdicts"].values()), {"pass"})
         self.assertIn("delaunay", record["verdicts"])
         self.assertIsNone(without["perturbed"])
-        told = record["perturbed"]
-        self.assertEqual((told["min_dihedral_deg"], told["max_dihedral_deg"]), (8, 165))
-        before, after = sum(told["before"].values()), sum(told["after"].values())
+        perturbation = record["perturbed"]
+        self.assertEqual((perturbation["min_dihedral_deg"], perturbation["max_dihedral_deg"]), (8, 165))
+        before, after = sum(perturbation["before"].values()), sum(perturbation["after"].values())
         self.assertGreater(before, 50)
         self.assertLess(after, before / 20)
-        self.assertEqual(sum(told["unmoved"].values()), after)
+        self.assertEqual(sum(perturbation["unmoved"].values()), after)
         self.assertGreater(record["counters"]["moves"], 0)
         self.assertEqual(record["counters"]["insertions"], without["counters"]["insertions"])
         self.assertEqual(record["promised_dihedral_deg"], [8, 165] if after == 0 else None)

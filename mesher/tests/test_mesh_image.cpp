@@ -131,7 +131,7 @@ TEST(MeshImageSizes, LabelsHaveTheirOwnRadius) {
   EXPECT_GT(result.report.cells_of_label.at(20), 3 * result.report.cells_of_label.at(10));
 }
 
-TEST(MeshImagePhases, EachAlgorithmTellsItsOwn) {
+TEST(MeshImagePhases, EachAlgorithmReportsItsOwn) {
   for (const int threads : {1, 3}) {
     for (const Executor executor : {Executor::kThreads, Executor::kVirtual}) {
       MeshingOptions options = radius(2);
@@ -155,7 +155,7 @@ TEST(MeshImagePhases, EachAlgorithmTellsItsOwn) {
   }
 }
 
-TEST(MeshImagePhases, AreToldOfARunThatWasStoppedBeforeItRefined) {
+TEST(MeshImagePhases, AreReportedForARunThatWasStoppedBeforeItRefined) {
   std::stop_source stop;
   stop.request_stop();
   for (const Algorithm algorithm : {Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm}) {
@@ -194,7 +194,7 @@ TEST(MeshImageRuns, LimitsAndCancellationLeaveAMeshThatSaysSo) {
 }
 
 // The mesh is so small that the limit is passed between two checks of a worker.
-TEST(MeshImageRuns, ALimitThatASmallMeshPassesIsToldOf) {
+TEST(MeshImageRuns, ALimitThatASmallMeshPassesIsReported) {
   for (const int threads : {1, 3}) {
     MeshingOptions options = radius(9);
     options.team = {.threads = threads, .oversubscribe = true};

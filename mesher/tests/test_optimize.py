@@ -103,9 +103,9 @@ class Optimize(PodmTestCase):
         process, _ = self.verdicts("out.mesh", "--claims", "structure,surface")
         self.assertEqual(process.returncode, 0, process.stdout)
 
-    def test_the_summary_tells_what_was_done(self):
+    def test_the_summary_lists_what_was_done(self):
         text = self.mesh("--radius", "8", "--optimize").stderr
-        self.assertRegex(text, r"optimized +\d+ cells under 8 or over 165 deg, \d+ before")
+        self.assertRegex(text, r"optimized +\d+ cells below 8 or above 165 deg, \d+ before")
         self.assertRegex(text, r"by \d+ flips")
 
     def test_senseless_options_are_refused(self):

@@ -61,21 +61,21 @@ class Plan(PodmTestCase):
         self.assertEqual([part["kind"] for part in self.plan(self.dumbbell(), "--drop", "2", "--labels", "1")["plan"]
                           ["thin_parts"] if part["label"] == 2], [])
 
-    def test_components_are_told_by_label(self):
+    def test_components_are_listed_by_label(self):
         info = self.plan(self.dumbbell(), "--radius", "8")
-        for label, told in zip(info["labels"], info["plan"]["labels"]):
-            self.assertEqual(label["value"], told["value"])
-            self.assertAlmostEqual(sum(told["components_mm3"]), label["volume_mm3"])
-            self.assertEqual(told["components_mm3"], sorted(told["components_mm3"], reverse=True))
-        self.assertEqual([len(told["components_mm3"]) for told in info["plan"]["labels"]], [1, 1])
+        for label, planned in zip(info["labels"], info["plan"]["labels"]):
+            self.assertEqual(label["value"], planned["value"])
+            self.assertAlmostEqual(sum(planned["components_mm3"]), label["volume_mm3"])
+            self.assertEqual(planned["components_mm3"], sorted(planned["components_mm3"], reverse=True))
+        self.assertEqual([len(planned["components_mm3"]) for planned in info["plan"]["labels"]], [1, 1])
 
-    def test_text_tells_the_same(self):
+    def test_text_has_the_same(self):
         process = run_podm("info", self.dumbbell(), "--plan", "--radius", "8", "--delta", "4")
         self.assert_exit(process, 0)
         for words in ("plan       radius 8 mm, delta 4 mm", "1 whole components, 1 bridges", "140 208 308"):
             self.assertIn(words, process.stdout)
 
-    def test_absurdly_many_cells_are_told_as_they_are(self):
+    def test_absurdly_many_cells_are_reported_as_they_are(self):
         plan = self.plan(self.dumbbell(), "--radius", "1e-9")["plan"]
         for count in plan["cells"], plan["memory_bytes"], plan["labels"][0]["cells"]:
             self.assertGreater(count, 1e20)

@@ -146,16 +146,16 @@ class Meshes(OnRanks):
         self.assert_exit(self.mesh(6, "--radius", 6, "--delta", 3, image=image), 0)
         self.assert_verifies(self.out, "--radius", 6)
 
-    def test_the_summary_is_told_once(self):
+    def test_the_summary_is_printed_once(self):
         process = self.mesh(2, "--radius", 4)
-        for words in ("guarantees all met", "deferred", "memory of one"):
+        for words in ("guarantees all met", "deferred", "memory per rank"):
             self.assertEqual(process.stderr.count(words), 1, words)
 
     def test_ranks_that_ask_for_more_threads_than_there_are_are_warned(self):
         processors = len(os.sched_getaffinity(0))
         process = self.mesh(processors + 1, "--radius", 6)
         self.assert_exit(process, 0)
-        self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks ask for {processors + 1} threads")
+        self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks request {processors + 1} threads")
 
 
     def test_help_fits_a_terminal_and_names_what_is_refused(self):
@@ -322,10 +322,10 @@ class Refusals(OnRanks):
         before = self.files()
         process = self.mpirun(*arguments)
         self.assert_exit(process, 2)
-        told = [line for line in process.stderr.splitlines() if line.startswith("podm-mpi: ")]
-        self.assertEqual(len(told), 1, process.stderr)
+        errors = [line for line in process.stderr.splitlines() if line.startswith("podm-mpi: ")]
+        self.assertEqual(len(errors), 1, process.stderr)
         for word in words:
-            self.assertIn(str(word), told[0])
+            self.assertIn(str(word), errors[0])
         self.assertEqual(self.files(), before)
 
     def test_what_ranks_do_not_have_yet(self):
@@ -338,7 +338,7 @@ class Refusals(OnRanks):
                 self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
                                         *values], word, "not available on ranks")
 
-    def test_faults_that_every_rank_sees_are_told_once(self):
+    def test_faults_that_every_rank_sees_are_printed_once(self):
         mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "out.vtu"], "out.vtu", ".pvtu")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "none" / "out.pvtu"], "none/out.pvtu")

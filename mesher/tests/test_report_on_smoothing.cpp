@@ -23,7 +23,7 @@ SmoothingReport report_of(const LabelImage& image, double width_mm) {
 
 // Returns the labels at `times` points per voxel along each axis, including the centers of voxels.
 LabelImage refined(const LabelImage& image, double width_mm, int times) {
-  const Isosurface isosurface(image, 1, smooth_interfaces(image, width_mm, 1).strengths);
+  const Isosurface isosurface(image, 1, smooth_interfaces(image, width_mm, 1).weights);
   const auto count = [&](std::size_t axis) { return times * (image.size[axis] - 1) + 1; };
   const auto at = [&](int i) { return static_cast<double>(i) / times; };
   return make_image({count(0), count(1), count(2)}, {1, 1, 1}, static_cast<int>(image.labels.size()) - 1,
@@ -44,7 +44,7 @@ std::uint64_t num_components(const LabelImage& refined, int times, LabelIndex la
 }
 
 // Two cubes that share only an edge, and two cubes that are a voxel apart.
-TEST(ReportOnSmoothing, TellsComponentsThatGrowTogether) {
+TEST(ReportOnSmoothing, ReportsComponentsThatGrowTogether) {
   for (const int gap : {0, 1}) {
     const LabelImage image = make_image({20, 20, 12}, {1, 1, 1}, 1, [&](int i, int j, int k) {
       const auto is_in = [&](int n, int from) { return n >= from && n < from + 6; };
@@ -60,7 +60,7 @@ TEST(ReportOnSmoothing, TellsComponentsThatGrowTogether) {
 TEST(ReportOnSmoothing, CountsComponentsAsAFineGridDoesButForFew) {
   constexpr int kTimes = 8;
   std::mt19937_64 random(1);
-  std::uint64_t of_voxels = 0, told_of = 0, fine_of = 0;
+  std::uint64_t of_voxels = 0, of_report = 0, fine_of = 0;
   for (const double width : {0.6, 0.8, 1.1, 1.5}) {
     const LabelImage image = make_image({14, 13, 12}, {1, 1, 1}, 3, [&](int i, int j, int k) {
       const double wave = std::sin(0.9 * i) + std::sin(1.1 * j + 1) + std::sin(0.8 * k + 2);
@@ -69,14 +69,14 @@ TEST(ReportOnSmoothing, CountsComponentsAsAFineGridDoesButForFew) {
     const SmoothingReport report = report_of(image, width);
     const LabelImage fine = refined(image, width, kTimes);
     for (LabelIndex label = 1; label < image.labels.size(); ++label) {
-      const auto& told = report.labels[label - 1u];
+      const auto& reported = report.labels[label - 1u];
       const std::uint64_t of_fine = num_components(fine, kTimes, label);
-      EXPECT_EQ(told.voxels_components, num_components(image, 1, label));
-      EXPECT_GE(told.smoothed_components, of_fine) << "a way that bends may join, too";
-      of_voxels += told.voxels_components, told_of += told.smoothed_components, fine_of += of_fine;
+      EXPECT_EQ(reported.voxels_components, num_components(image, 1, label));
+      EXPECT_GE(reported.smoothed_components, of_fine) << "a way that bends may join, too";
+      of_voxels += reported.voxels_components, of_report += reported.smoothed_components, fine_of += of_fine;
     }
   }
-  EXPECT_LT(told_of - fine_of, (of_voxels - fine_of) / 10);
+  EXPECT_LT(of_report - fine_of, (of_voxels - fine_of) / 10);
 }
 
 }  // namespace

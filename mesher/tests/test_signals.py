@@ -160,7 +160,7 @@ class Refinement(PodmTestCase):
         self.assertLessEqual(end.seconds, LONGEST_S)
         self.assertEqual(self.files(), {})
 
-    def test_a_hangup_is_told_of_and_heeded(self):
+    def test_a_hangup_is_reported_and_obeyed(self):
         end = end_of(self.start(), signal.SIGHUP)
         self.assertIn("podm: SIGHUP: ", end.stderr)
         self.assert_stopped(end)
@@ -193,7 +193,7 @@ class Refinement(PodmTestCase):
         self.assertIsNone(process.poll())
         self.assert_stopped(end_of(process, signal.SIGTERM))
 
-    def test_a_node_that_never_has_a_leaf_keeps_nobody_waiting(self):
+    def test_a_node_that_never_has_a_leaf_keeps_no_worker_waiting(self):
         """One leaf holds the whole object, so all nodes except one wait until that node has finished."""
         with tempfile.TemporaryDirectory() as elsewhere:
             runs = pathlib.Path(elsewhere) / "runs.jsonl"
@@ -204,7 +204,7 @@ class Refinement(PodmTestCase):
             self.assert_stopped(end)
             self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
 
-    def test_leaves_in_the_making_keep_nobody_waiting(self):
+    def test_leaves_in_the_making_keep_no_worker_waiting(self):
         """The number of leaves is the largest allowed: making the octree and the queue takes seconds."""
         for moment_s in 0.3, 0.8, 1.3, 1.8:
             with self.subTest(moment_s=moment_s), tempfile.TemporaryDirectory() as elsewhere:
@@ -219,7 +219,7 @@ class Refinement(PodmTestCase):
                 self.assert_stopped(end, set() if "the mesh has no cell" in end.stderr else MESHES)
                 self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
 
-    def test_a_full_pipe_keeps_nobody_waiting(self):
+    def test_a_full_pipe_keeps_no_worker_waiting(self):
         read_end, write_end = os.pipe()
         try:
             size = fcntl.fcntl(write_end, fcntl.F_SETPIPE_SZ, 4096)

@@ -54,7 +54,7 @@ class SizesByPlace(PodmTestCase):
                 smaller = self.verdict_on_size("--size-image", self.ramp, "--size-factor", 0.8)
                 self.assertGreater(smaller["num_violations"], 0)
 
-    def test_the_record_tells_of_them(self):
+    def test_the_record_has_them(self):
         record = self.record_of("--size-image", self.ramp, "--size-near", "shell,0=2", "--size-near", "2,1=1.5:3",
                                 "--grade", 0.5)
         self.assertEqual(record["options"]["size_image"],
@@ -145,7 +145,7 @@ class SizesByPlace(PodmTestCase):
     def test_bad_files_are_refused(self):
         far = write_sizes(self.folder / "far.nii", lambda x, y, z: 5, step=0.001)
         far.write_bytes(far.read_bytes()[:292] + struct.pack("<f", 9000) + far.read_bytes()[296:])
-        self.assert_refused(self.refused("--size-image", far), far, "no point in common")
+        self.assert_refused(self.refused("--size-image", far), far, "do not overlap")
         nan = write_sizes(self.folder / "nan.nii", lambda x, y, z: float("nan") if x > 100 and y > 100 else 5)
         self.assert_refused(self.refused("--size-image", nan), nan, "voxel (8, 8, 0) is not a number")
         none = write_sizes(self.folder / "none.nii", lambda x, y, z: -1)
@@ -164,7 +164,7 @@ class SizesByPlace(PodmTestCase):
         self.assert_refused(self.refused("--size-near", "1,9=2"), "no label '9'")
         for option, value in (("--size-image", self.ramp), ("--size-near", "1,0=2"), ("--grade", 0.5)):
             self.assert_refused(self.refused(option, value, "--space", "voxel", "--verify"),
-                                f"podm-verify does not judge sizes of {option} in --space voxel")
+                                f"podm-verify does not check the sizes of {option} in --space voxel")
 
 
 if __name__ == "__main__":

@@ -245,7 +245,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   };
   SizeImage far = sizes_over(3, 20, ramp);
   far.voxel_to_ras[3] = 1000;
-  EXPECT_NE(refusal(with(far)).find("sizes.nii: the size image and the object have no point in common"),
+  EXPECT_NE(refusal(with(far)).find("sizes.nii: the size image and the object do not overlap"),
             std::string::npos);
   EXPECT_NE(
       refusal(with(sizes_over(30, 60, [](const Point& p) { return p.x > 40 ? 1 : 0; }))).find("sizes.nii"),
@@ -261,7 +261,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   });
   EXPECT_NE(fault_of<InputError>([&] {
               mesh_image(separate, apart);
-            }).find("labels 10 and 20: no voxels of theirs touch"),
+            }).find("labels 10 and 20: they have no voxels that touch"),
             std::string::npos);
   apart.sizes.near[0].labels[1] = {10};
   EXPECT_NE(refusal(apart).find("10 is on both sides"), std::string::npos);

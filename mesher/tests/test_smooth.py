@@ -43,7 +43,7 @@ class Smooth(PodmTestCase):
             self.assertEqual(set(record["guarantees"].values()), {0})
             self.assert_exit(run_podm("replay", image, log), 0)
 
-    def test_the_record_tells_volumes_of_voxels_and_smoothed_ones_that_are_the_meshs(self):
+    def test_the_record_has_volumes_of_voxels_and_smoothed_ones_that_are_the_meshs(self):
         record = self.record_of("--smooth", 1.5 * self.voxel_mm(), "--delta", 0.7 * self.voxel_mm())
         smoothing = record["smoothing"]
         self.assertEqual(record["options"]["smoothing_mm"], smoothing["width_mm"])
@@ -61,10 +61,10 @@ class Smooth(PodmTestCase):
         self.assertIsNone(self.record_of()["smoothing"])
 
     def test_a_blur_below_half_a_voxel_is_said_to_smooth_nothing(self):
-        for voxels, is_told in ((0.45, True), (0.55, False)):
-            self.assertEqual("smooths nothing" in self.mesh("--smooth", voxels * self.voxel_mm()).stderr, is_told)
+        for voxels, is_reported in ((0.45, True), (0.55, False)):
+            self.assertEqual("smooths nothing" in self.mesh("--smooth", voxels * self.voxel_mm()).stderr, is_reported)
 
-    def test_the_summary_tells_them_too(self):
+    def test_the_summary_has_them_too(self):
         process = self.mesh("--smooth", 1.5 * self.voxel_mm())
         self.assertIn("smoothed ", process.stderr)
         self.assertNotIn("smoothed ", self.mesh().stderr)
@@ -88,7 +88,7 @@ class Smooth(PodmTestCase):
                         *map(str, options)], capture_output=True, text=True, check=False)
         return json.loads(report.read_text())["claims"]["labels"]
 
-    def test_a_label_that_the_width_would_lose_is_told_and_kept(self):
+    def test_a_label_that_the_width_would_lose_is_reported_and_kept(self):
         image = self.folder / "thin.nrrd"
         size = 24
         voxels = bytes(2 if k == 12 and 4 <= i < 20 and 4 <= j < 20 else 1 if all(4 <= x < 20 for x in (i, j, k)) else 0

@@ -124,7 +124,7 @@ std::optional<Components::Id> component_at(const LabelImage& image, const Compon
 
 class ThinPartsOfMeshes : public testing::TestWithParam<unsigned> {};
 
-TEST_P(ThinPartsOfMeshes, TellOfEachComponentThatIsLostOrCut) {
+TEST_P(ThinPartsOfMeshes, ListEachComponentThatIsLostOrCut) {
   const LabelImage image = shapes(GetParam());
   const Components components(image);
   const double voxel_mm = std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);

@@ -64,13 +64,13 @@ class Help(PodmTestCase):
         self.assert_exit(process, 0)
         first, *build = process.stdout.splitlines()
         self.assertRegex(first, r"^podm \d+\.\d+\.\d+$")
-        told = dict(line.split(": ", 1) for line in build)
-        self.assertEqual(list(told), ["compiler", "flags", "commit", "dirty", "libraries"])
-        self.assertRegex(told["commit"], r"^([0-9a-f]{40}|unknown)$")
-        self.assertIn(told["dirty"], ("true", "false", "unknown"))
-        self.assertIn("-ffp-contract=off", told["flags"])
+        build_info = dict(line.split(": ", 1) for line in build)
+        self.assertEqual(list(build_info), ["compiler", "flags", "commit", "dirty", "libraries"])
+        self.assertRegex(build_info["commit"], r"^([0-9a-f]{40}|unknown)$")
+        self.assertIn(build_info["dirty"], ("true", "false", "unknown"))
+        self.assertIn("-ffp-contract=off", build_info["flags"])
         for library in ("Boost", "CGAL", "hwloc", "ITK", "numa", "zlib"):
-            self.assertRegex(told["libraries"], rf"\b{library} \d")
+            self.assertRegex(build_info["libraries"], rf"\b{library} \d")
 
     def test_standard_output_that_is_full_is_a_fault(self):
         with open("/dev/full", "w") as full:

@@ -22,8 +22,8 @@ def setUpModule():
 
 def processes_of_session(session):
     """Returns the running processes of the session, without zombies."""
-    told = subprocess.run(["ps", "-o", "stat=,comm=", "-s", str(session)], capture_output=True, text=True).stdout
-    return [line for line in told.splitlines() if not line.startswith("Z")]
+    listing = subprocess.run(["ps", "-o", "stat=,comm=", "-s", str(session)], capture_output=True, text=True).stdout
+    return [line for line in listing.splitlines() if not line.startswith("Z")]
 
 
 class View(PodmTestCase):

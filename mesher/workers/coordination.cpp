@@ -16,7 +16,7 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
       resume_(std::move(resume)),
       first_id_(first_id) {
   if (workers_per_home_ != 0 && members_.size() % workers_per_home_ != 0)
-    throw InternalError("homes must divide the workers evenly");
+    throw InternalError("the number of homes must divide the number of workers");
 }
 
 Coordination::Answer Coordination::conflict(WorkerId self, WorkerId holder) {
@@ -119,8 +119,8 @@ Coordination::Entries Coordination::take_gift(WorkerId self) {
   return std::exchange(member.gift, {});
 }
 
-// A worker that begs again meanwhile may be roused twice, but the number of rounds is bounded.
-void Coordination::rouse(WorkerId self) {
+// A worker that begs again meanwhile may be woken twice, but the number of rounds is bounded.
+void Coordination::wake_beggars(WorkerId self) {
   for (std::size_t others = members_.size() - 1; others > 0; --others) {
     const BeggingList::Beggar beggar = begging_.take_first_for(self - first_id_);
     if (beggar.worker == kNoWorker) return;

@@ -79,7 +79,7 @@ class Coordination {
   Begging beg(WorkerId self);
   Entries take_gift(WorkerId self);
   /// Gives an empty gift to each begging worker. `self` does not beg.
-  void rouse(WorkerId self);
+  void wake_beggars(WorkerId self);
   /// Called by the master when beg() has returned kOver to it and there will be no more cells.
   void dismiss();
 

@@ -46,13 +46,13 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
     const Event event = events_.top();
     events_.pop();
     now_s_ = event.time_s;
-    go_on(event.worker);
+    advance(event.worker);
     if (num_events_ % StopControl::kAttemptsBetweenChecks != 0) continue;
     stop_.observe();
     stop_.check_limits();
   }
   if (!is_over() && std::any_of(states_.begin(), states_.end(), is_at_work))
-    throw InternalError("virtual time stands still: every worker waits");
+    throw InternalError("virtual time cannot advance: every worker waits");
   finish_all();
 } catch (const std::bad_alloc&) {
   stop_.end(StopReason::kMemoryLimit);
@@ -80,7 +80,7 @@ void VirtualTime::finish_all() {
   if (failure) std::rethrow_exception(failure);
 }
 
-void VirtualTime::go_on(WorkerId worker) {
+void VirtualTime::advance(WorkerId worker) {
   WorkerState& state = states_[worker];
   if (state.most_steps > 0) allow_part(state);
   if (state.fibre->resume() != Fibre::State::kOutOfSteps) return;

@@ -126,7 +126,7 @@ class VirtualTime {
   void pass(WorkerId self, double seconds);
   void allow_part(WorkerState& state);
   void schedule(WorkerId worker, double delay_s);
-  void go_on(WorkerId worker);
+  void advance(WorkerId worker);
   void finish_all();
 
   StopControl& stop_;

@@ -23,7 +23,7 @@ struct Setup {
   Executor executor;
   int num_workers;
   int numa_nodes = 1;
-  bool is_perturbed = false;
+  bool has_perturbation = false;
 };
 const std::vector<Setup> kSetups{
     {Algorithm::kPodm, Executor::kThreads, 1},          {Algorithm::kPodm, Executor::kThreads, 4},
@@ -78,7 +78,7 @@ class Faults : public testing::TestWithParam<Setup> {
                                         : pdr_podm(problem, team, leaves, stop);
   }
   static std::optional<DihedralBounds> dihedral_bounds() {
-    return GetParam().is_perturbed ? std::optional(DihedralBounds(15, 155)) : std::nullopt;
+    return GetParam().has_perturbation ? std::optional(DihedralBounds(15, 155)) : std::nullopt;
   }
   static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
@@ -125,7 +125,7 @@ TEST_P(Faults, StoresThatFillUpLeaveAValidMesh) {
   EXPECT_GT(num_ended, 5);
 }
 
-TEST_P(Faults, StoresWithoutNumbersAreToldFromThoseWithoutMemory) {
+TEST_P(Faults, StoresWithoutNumbersAreDistinguishedFromThoseWithoutMemory) {
   constexpr std::size_t kCapacity = 1500;
   StopControl of_numbers = patient(), of_memory = patient();
   EXPECT_EQ(refine(of_numbers, kCapacity, kCapacity).stop_reason, StopReason::kNumberLimit);
@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Setups, Faults, testing::ValuesIn(kSetups), [](const au
   const Setup& setup = test.param;
   std::string name = to_string(setup.algorithm) + to_string(setup.executor) +
                      std::to_string(setup.num_workers) + "on" + std::to_string(setup.numa_nodes) +
-                     (setup.is_perturbed ? "perturbed" : "");
+                     (setup.has_perturbation ? "perturbed" : "");
   std::erase(name, '-');
   return name;
 });

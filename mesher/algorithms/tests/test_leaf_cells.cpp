@@ -166,21 +166,21 @@ TEST_F(Distribution, ListsOnlyTheCellsThatAreGiven) {
   }
 }
 
-TEST_F(Distribution, TellsTheQueueOfEveryLeafThatHasCells) {
+TEST_F(Distribution, ListsEveryLeafThatHasCellsInTheQueue) {
   LeafCells cells(mesh_, octree_);
   RefinementQueue queue(octree_, 2);
   for (const std::size_t slice : slices(cells)) cells.distribute(slice);
   cells.share_out(queue, {});
-  std::set<LeafId> told;
+  std::set<LeafId> listed;
   while (const auto leaf = pop(queue, 0)) {
-    EXPECT_TRUE(told.insert(*leaf).second);
+    EXPECT_TRUE(listed.insert(*leaf).second);
     queue.finish(*leaf);
   }
   for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf)
-    EXPECT_EQ(told.count(leaf) == 1, !of_leaf_[leaf].empty()) << "leaf " << leaf;
+    EXPECT_EQ(listed.count(leaf) == 1, !of_leaf_[leaf].empty()) << "leaf " << leaf;
 }
 
-TEST_F(Distribution, TellsTheQueueNothingWhenTheRunIsOver) {
+TEST_F(Distribution, ListsNothingInTheQueueWhenTheRunIsOver) {
   LeafCells cells(mesh_, octree_);
   RefinementQueue queue(octree_, 2);
   for (const std::size_t slice : slices(cells)) cells.distribute(slice);

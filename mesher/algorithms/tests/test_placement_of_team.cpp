@@ -13,7 +13,7 @@ namespace {
 
 const std::string kBlacklight = PODM_MACHINES "/blacklight.toml";
 
-TEST(PlacementOfTeam, ADescriptionInTomlTellsCosts) {
+TEST(PlacementOfTeam, ADescriptionInTomlHasCosts) {
   const PlacementOfTeam placement =
       place_team({.threads = 40, .pin = "compact", .topology_path = kBlacklight});
   ASSERT_TRUE(placement.model);
@@ -24,7 +24,7 @@ TEST(PlacementOfTeam, ADescriptionInTomlTellsCosts) {
   EXPECT_EQ(placement.places[39].node, 2);
 }
 
-TEST(PlacementOfTeam, OtherMachinesTellNone) {
+TEST(PlacementOfTeam, OtherMachinesHaveNone) {
   const ScratchFolder folder;
   const Topology described = place_team({.topology_path = kBlacklight}).machine;
   const PlacementOfTeam as_xml =

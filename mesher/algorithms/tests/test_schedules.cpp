@@ -14,7 +14,7 @@
 #include <numeric>
 #include <random>
 
-#include "algorithms/perturb.h"
+#include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
 #include "algorithms/tests/broken_rule.h"
 #include "algorithms/tests/in_own_process.h"
@@ -101,7 +101,7 @@ Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& s
     if (refine(*workers[self], group, time) && self == 0) group.dismiss();
   });
   construction.account(workers, time);
-  perturb(construction, parameters);
+  perturb_mesh(construction, parameters);
   return construction.finish();
 }
 

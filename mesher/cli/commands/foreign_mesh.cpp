@@ -74,7 +74,7 @@ class MeshBuilder {
     for (std::size_t i = 0; i < file_.cells.size(); ++i)
       for (const std::uint32_t vertex : file_.cells[i])
         if (vertex >= file_.vertices.size())
-          refuse(fmt::format("tetrahedron {} has a vertex that is none", i));
+          refuse(fmt::format("tetrahedron {} has a vertex that does not exist", i));
     for (std::size_t i = 0; i < file_.vertices.size(); ++i)
       for (const double coordinate : file_.vertices[i])
         if (!std::isfinite(coordinate))
@@ -94,14 +94,14 @@ class MeshBuilder {
 
   void number_labels() {
     const bool has_labels = !file_.cell_labels.empty();
-    if (!has_labels) foreign_.warnings.push_back(path_ + ": cells have no labels: all get 1");
+    if (!has_labels) foreign_.warnings.push_back(path_ + ": cells have no labels; all cells get label 1");
     if (!has_labels) file_.cell_labels.assign(file_.cells.size(), 1);
     std::set<std::int64_t> values(file_.cell_labels.begin(), file_.cell_labels.end());
     if (*values.begin() < 0 || *values.rbegin() > kMostValue)
       refuse(fmt::format("label {} is not in [0, 2^32)",
                          *values.begin() < 0 ? *values.begin() : *values.rbegin()));
     if (values.size() >= kMaxLabels)
-      refuse(fmt::format("{} labels, {} are the most", values.size(), kMaxLabels - 1));
+      refuse(fmt::format("{} labels, at most {} are supported", values.size(), kMaxLabels - 1));
     mesh_.labels.push_back({value_of_outside(values), ""});
     std::map<std::int64_t, LabelIndex> index_of;
     for (const std::int64_t value : values) {
@@ -120,7 +120,7 @@ class MeshBuilder {
     const auto space = spaces.find(file_.space);
     if (space != spaces.end()) mesh_.space = space->second;
     if (space == spaces.end())
-      foreign_.warnings.push_back(path_ + ": no frame of coordinates is told: RAS is taken for it");
+      foreign_.warnings.push_back(path_ + ": the file names no frame of coordinates; RAS is assumed");
     mesh_.is_optimized = file_.unclaimed.contains("delaunay");
     mesh_.dihedral_bounds_deg = file_.promised_dihedral_deg;
     mesh_.smoothing_mm = file_.smoothing_mm.value_or(0);
@@ -135,7 +135,7 @@ class MeshBuilder {
       num_turned += side < 0;
       num_flat += side == 0;
     }
-    warn(num_turned, "cells were negatively oriented and are turned over");
+    warn(num_turned, "cells were negatively oriented and have been reversed");
     warn(num_flat, "cells are flat");
   }
 
@@ -145,7 +145,7 @@ class MeshBuilder {
       refuse(fmt::format("more than two tetrahedra share the triangle of the vertices {}, {} and {}",
                          (*shared)[0], (*shared)[1], (*shared)[2]));
     warn(count_missing(file_.facets, mesh_.facets),
-         "triangles of the file separate no labels and are left out");
+         "triangles of the file separate no labels and are omitted");
   }
 
   using Facets = std::vector<std::array<std::uint32_t, 3>>;

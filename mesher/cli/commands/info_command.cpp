@@ -19,8 +19,8 @@ namespace {
 std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {
   if (counts[kBackground] > 0) return "";
   return fmt::format(
-      "note       no background: no voxel has the value {}, so that all of the image is foreground\n"
-      "           (--background VALUE takes another for it)\n",
+      "note       no background: no voxel has the value {}, so the whole image is foreground\n"
+      "           (--background VALUE selects another value)\n",
       image.labels[kBackground].value);
 }
 
@@ -56,7 +56,7 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
                       {"name", image.labels[i].name},
                       {"voxels", counts[i]},
                       {"volume_mm3", static_cast<double>(counts[i]) * voxel_mm3}});
-  nlohmann::ordered_json told = {
+  nlohmann::ordered_json info = {
       {"path", path},
       {"size", image.size},
       {"spacing_mm", image.spacing},
@@ -65,8 +65,8 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
       {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
       {"labels", labels},
       {"warnings", image.warnings}};
-  if (plan) told["plan"] = plan_json(*plan, image);
-  return told;
+  if (plan) info["plan"] = plan_json(*plan, image);
+  return info;
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& o
   using Style = ProgressDisplay::Style;
   ProgressDisplay display(stderr, quiet ? Style::kNone : ProgressDisplay::style_for(stderr));
   const auto progress = [&](const Progress& now) {
-    if (now.phase != "transform") signals.heed_first(quiet);
+    if (now.phase != "transform") signals.stop_on_first_signal(quiet);
     display.show(now);
   };
   return mesh_image(image, options, progress, signals.token());
@@ -116,7 +116,7 @@ int run(const MeshCommand& command) {
   });
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals);
-  const int exit_code = tell(run, records);
+  const int exit_code = report(run, records);
   if (!command.page_path.empty() && run.mesh.cells > 0) write_page(run, result.mesh, signals);
   return exit_code;
 }

@@ -15,9 +15,9 @@
 #include "cli/reports/appended_file.h"
 #include "cli/reports/input_sha256.h"
 #include "cli/reports/progress_display.h"
-#include "cli/reports/told_by_ranks.h"
+#include "cli/reports/ranks_record.h"
+#include "distributed/collective_errors.h"
 #include "distributed/in_process_ranks.h"
-#include "distributed/together.h"
 #include "distributed/write_pieces.h"
 #include "podm/mesh_io.h"
 #include "podm/operation_log.h"
@@ -52,7 +52,7 @@ class Run {
     std::array<std::uint64_t, 1> code{0};
     if (ranks_.rank() == 0) {
       if (command_.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals_);
-      code[0] = static_cast<std::uint64_t>(tell(run, records_));
+      code[0] = static_cast<std::uint64_t>(report(run, records_));
     }
     ranks_.maximum(code);
     return static_cast<int>(code[0]);
@@ -72,11 +72,11 @@ class Run {
       if (ranks_.rank() == 0 && !command_.record_path.empty()) records_.emplace(command_.record_path);
       if (!command_.log_path.empty()) log_.emplace(own_log_path());
     };
-    do_together(check, ranks_);
+    do_collectively(check, ranks_);
     expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
                       {"output", command_.mesh_path},
                       {"--log", command_.log_path},
-                      {"--verify", command_.verify ? "asked for" : "not asked for"}},
+                      {"--verify", command_.verify ? "requested" : "not requested"}},
                      ranks_);
   }
 
@@ -98,7 +98,7 @@ class Run {
       options.limits.max_memory_bytes /= ranks_here;
       if (log_) options.log = &*log_;
     };
-    do_together(read, ranks_);
+    do_collectively(read, ranks_);
     return {.command = command_,
             .image = *image_,
             .options = std::move(options),
@@ -123,8 +123,8 @@ class Run {
                                 .mesh_hash = mesh_hash_text(mesh_hash),
                                 .rank = ranks_.rank(),
                                 .num_ranks = ranks_.size()};
-    do_together([&] { log_->finish(head); }, ranks_);
-    do_together([&] { log_->publish(); }, ranks_);
+    do_collectively([&] { log_->finish(head); }, ranks_);
+    do_collectively([&] { log_->publish(); }, ranks_);
     if (ranks_.rank() == 0) remove_logs_of_more_ranks();
   }
 
@@ -142,7 +142,7 @@ class Run {
     ProgressDisplay display(stderr, is_silent ? Style::kNone : ProgressDisplay::style_for(stderr));
     const auto progress = [&](const Progress& now) {
       if (is_in_process() && ranks_.rank() != 0) return;
-      if (now.phase != "transform") signals_.heed_first(is_silent);
+      if (now.phase != "transform") signals_.stop_on_first_signal(is_silent);
       display.show(now);
     };
     return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(),

@@ -4,14 +4,14 @@
 #include "cli/options/options.h"
 #include "cli/processes/signal_thread.h"
 #include "distributed/communication.h"
-#include "distributed/made_once.h"
 #include "distributed/mesh_image_on_ranks.h"
+#include "distributed/shared_value.h"
 
 namespace podm::cli {
 
 /// The objects that the ranks of a process share.
 struct SharedByRanks {
-  MadeOnce<LabelImage> image;
+  SharedValue<LabelImage> image;
   SharedIsosurface isosurface;
 };
 

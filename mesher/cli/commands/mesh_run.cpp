@@ -59,17 +59,17 @@ std::vector<std::string> MeshRun::unmet() const {
     sentences.push_back(fmt::format("the run ended early: {}", to_string(reason)));
   if (mesh.cells == 0)
     sentences.push_back(command.mesh_path.empty() ? "the mesh has no cell"
-                                                  : "the mesh has no cell, so that none is written");
+                                                  : "the mesh has no cell; no file is written");
   const Guarantees& misses = report.guarantees;
   count(misses.radius_edge, fmt::format("cells with a radius-edge ratio of {} or more", kRadiusEdgeBound));
   count(misses.facet_angle,
         fmt::format("boundary facets with an angle of {} degrees or less", kFacetAngleBound));
   count(misses.radius, "cells with a circumradius above the bound");
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
-  count(misses.orientation, "cells that rounding made flat or turned over");
+  count(misses.orientation, "cells that rounding made flat or inverted");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
   if (command.verify && verification.is_null() && mesh.cells > 0)
-    sentences.push_back("podm-verify: ended early by a signal, so that no claim is decided");
+    sentences.push_back("podm-verify: ended early by a signal; no claim is decided");
   for (const auto& [claim, verdict] : verdicts())
     if (verdict != "pass") sentences.push_back(fmt::format("podm-verify: claim {}: {}", claim, verdict));
   return sentences;
@@ -102,7 +102,7 @@ MeshNumbers numbers_of(const TetMesh& mesh) {
           .facet_pairs = most_first(by_pair)};
 }
 
-int tell(const MeshRun& run, std::optional<AppendedFile>& records) {
+int report(const MeshRun& run, std::optional<AppendedFile>& records) {
   if (records) records->append(json_line(record(run)));
   if (!run.command.quiet) fmt::print(stderr, "{}", summary(run));
   if (run.command.stats) fmt::print(stderr, "{}", statistics(run));

@@ -61,6 +61,6 @@ struct MeshRun {
 
 /// Appends the record and prints summary, statistics, warnings and missed guarantees, as the command
 /// specifies. Returns the exit code.
-int tell(const MeshRun& run, std::optional<AppendedFile>& records);
+int report(const MeshRun& run, std::optional<AppendedFile>& records);
 
 }  // namespace podm::cli

@@ -16,7 +16,7 @@ namespace {
 LogOfRank read_log(const std::string& path, const ReplayCommand& command, const std::string& image_sha256) {
   LogOfRank read{path, read_operation_log(path)};
   if (read.log.head.image_sha256 != image_sha256)
-    throw InputError(fmt::format("{}: made from another image than {} with these label options", path,
+    throw InputError(fmt::format("{}: logged for another image than {} with these label options", path,
                                  command.image.path));
   return read;
 }

@@ -135,10 +135,10 @@ void check_verifier(const MeshCommand& command) {
   if (const std::string option = option_of_sizes_by_place(command);
       !option.empty() && command.meshing.space == Space::kVoxel)
     throw InputError(
-        fmt::format("--verify: podm-verify does not judge sizes of --{} in --space voxel", option));
+        fmt::format("--verify: podm-verify does not check the sizes of --{} in --space voxel", option));
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
-        "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));
+        "--verify: podm-verify does not read {}; it reads all other formats that podm writes", mesh_path));
   if (::access(verifier_path().c_str(), X_OK) != 0)
     throw InputError(fmt::format("--verify: {} cannot be run", verifier_path()));
 }
@@ -151,7 +151,7 @@ nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signa
   auto report = nlohmann::ordered_json::parse(verifier.read(signals), nullptr, false);
   if (report.is_object()) return report;
   if (signals.token().stop_requested()) return nullptr;
-  throw InputError(fmt::format("--verify: {} gave no report", command[0]));
+  throw InputError(fmt::format("--verify: {} printed no report", command[0]));
 }
 
 }  // namespace podm::cli

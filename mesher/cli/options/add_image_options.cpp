@@ -32,8 +32,8 @@ void add_replay_command(CLI::App& program, ReplayCommand& command) {
   add_image_options(app, command.image);
   require(add_many(
       app, "LOG", "",
-      "what podm mesh --log wrote, with the same image and label options; of\n"
-      "podm-mpi mesh --log FILE the logs of all ranks: FILE.0 FILE.1 ...",
+      "log of podm mesh --log, with the same image and label options; for\n"
+      "podm-mpi mesh --log FILE, the logs of all ranks: FILE.0 FILE.1 ...",
       [&command](const std::string& text, const std::string&) { command.log_paths.push_back(text); }));
 }
 
@@ -43,8 +43,8 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   add_flag(app, "--json", command.json, "print one JSON object [default: text]");
   CLI::Option* plan =
       add_flag(app, "--plan", command.plan,
-               "also what podm mesh will cost and lose with the options below: cells by\n"
-               "label, memory, seconds, what delta is too coarse for, components [default: no]");
+               "also predict what podm mesh costs and loses with the options below: cells by\n"
+               "label, memory, seconds, parts too thin for delta, components [default: no]");
   add_planned_options(app, command.planned, plan);
 }
 

@@ -19,7 +19,7 @@ const char* title_of(OptionGroup group) {
     case OptionGroup::kDihedral:
       return "Dihedral angles";
     case OptionGroup::kLimits:
-      return "Limits (a run that meets one writes a valid mesh and exits with 1)";
+      return "Limits (a run that reaches one writes a valid mesh and exits with 1)";
     case OptionGroup::kOutput:
       return "Output";
     case OptionGroup::kAlgorithm:
@@ -146,15 +146,14 @@ void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan)
 }
 
 void add_convert_command(CLI::App& program, ConvertCommand& command) {
-  CLI::App& app = add_command(program, "convert", "write a mesh file of any maker in another format");
+  CLI::App& app = add_command(program, "convert", "convert a mesh file of any program to another format");
   require(add_one(app, "IN", "", "mesh file that podm-verify reads", into(command.input_path)));
-  require(add_one(app, "OUT", "", "mesh file, with an extension that podm mesh -o takes",
+  require(add_one(app, "OUT", "", "mesh file, with an extension that podm mesh -o accepts",
                   into(command.output_path)));
   add_mesh_file_options(app, command.mesh_file);
-  end_help(
-      app,
-      "Labels and their names stay; facets are those between labels; vertices, cells and facets have the\n"
-      "order in which podm mesh writes them.");
+  end_help(app,
+           "Labels keep their names. Facets are those between labels. Vertices, cells and facets have the\n"
+           "order in which podm mesh writes them.");
 }
 
 }  // namespace podm::cli

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kLeastPixels = 16, kMostPixels = 16384;
 constexpr const char* kPlaneForm =
-    "AXIS=PLACE or none: x, y, z or a normal as 1,1,0; a fraction as 0.5, or as -20mm";
+    "AXIS=PLACE or none: AXIS is x, y, z or a normal such as 1,1,0; "
+    "PLACE is a fraction such as 0.5, or -20mm";
 
 std::array<double, 3> parse_normal(const std::string& text, const std::string& option) {
   if (text == "x") return {1, 0, 0};
@@ -35,7 +36,7 @@ std::optional<CutPlane> parse_plane(const std::string& text, const std::string& 
   plane.place = parse_numbers(place, option, 1, kPlaneForm)[0];
   if (plane.is_fraction && !(plane.place > 0 && plane.place < 1))
     throw InputError(
-        fmt::format("{}: '{}' is not a fraction between 0 and 1; mm are told as {}mm", option, place, place));
+        fmt::format("{}: '{}' is not a fraction between 0 and 1; write mm as {}mm", option, place, place));
   return plane;
 }
 
@@ -70,41 +71,44 @@ std::vector<std::string> parse_names(const std::string& text, const std::string&
 }
 
 void add_cut_options(CLI::App& app, ViewCommand& command) {
-  begin_group(app, "What is shown");
+  begin_group(app, "Parts shown");
   add_one(app, "--cut", "PLANE",
-          "leave out cells beyond this plane: an axis or a normal, and a place, as a\n"
+          "omit cells beyond this plane: an axis or a normal, and a place, as a\n"
           "fraction of the mesh's extent or in mm: x=0.5, z=-20mm, 1,1,0=0.3;\nor none",
           {[&command](const std::string& text, const std::string& name) {
              command.cut = parse_plane(text, name);
            },
            "y=0.5"});
   add_flag(app, "--flip", command.flip,
-           "leave out the cells on its other side, and look from there [default: no]");
-  add_one(app, "--labels", "NAMES", "these labels only, names or values, e.g. liver,spleen [default: all]",
+           "omit the cells on the other side of the cut, and look from there [default: no]");
+  add_one(app, "--labels", "NAMES",
+          "show only these labels, by name or value, e.g. liver,spleen [default: all]",
           [&command](const std::string& text, const std::string& name) {
             command.labels = parse_names(text, name);
           });
-  add_one(app, "--hide", "NAMES", "all but these labels [default: none]",
+  add_one(app, "--hide", "NAMES", "show all labels except these [default: none]",
           [&command](const std::string& text, const std::string& name) {
             command.hide = parse_names(text, name);
           });
 }
 
 void add_look_options(CLI::App& app, ViewCommand& command) {
-  begin_group(app, "How it is shown");
+  begin_group(app, "Appearance");
   add_choice(app, "--colour",
-             "label; or how good cells are, bad ones bright: dihedral (smallest angle),\n"
+             "label; or quality of cells, bad cells bright: dihedral (smallest angle),\n"
              "ratio (circumradius over shortest edge) or size (circumradius)",
              command.colour);
   add_one(app, "--camera", "DEG,DEG",
-          "look from this far to the right of where one faces the cut, and from this\nfar above it, degrees",
+          "direction of view: degrees to the right of the direction that faces the cut,\n"
+          "and degrees above it",
           {[&command](const std::string& text, const std::string& name) {
              const auto angles = parse_numbers(text, name, 2, "two angles in degrees, as in 20,15");
              command.camera_deg = {angles[0], angles[1]};
            },
            fmt::format("{:g},{:g}", command.camera_deg[0], command.camera_deg[1])});
-  add_one(app, "--zoom", "X", "times as near as all of it fits", into_positive(command.zoom, "number"));
-  add_one(app, "--size", "WxH", "of the picture, pixels",
+  add_one(app, "--zoom", "X", "magnification; at 1 the whole mesh fits the picture",
+          into_positive(command.zoom, "number"));
+  add_one(app, "--size", "WxH", "size of the picture, pixels",
           {[&command](const std::string& text, const std::string& name) {
              command.size = parse_size(text, name);
            },
@@ -115,7 +119,7 @@ void add_look_options(CLI::App& app, ViewCommand& command) {
            },
            "white"});
   add_flag(app, "--no-legend", command.without_legend,
-           "leave out what colours mean [default: it is at the right]");
+           "omit the legend of colours [default: it is at the right]");
 }
 
 }  // namespace

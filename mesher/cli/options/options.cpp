@@ -129,9 +129,9 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
   program.get_formatter()->column_width(kHelpColumn);
-  program.set_help_flag("-h,--help", "print this help and leave");
+  program.set_help_flag("-h,--help", "print this help and exit");
   program.set_version_flag("--version", name + " " PODM_VERSION "\n" + build_info() + "\n",
-                           "print the version and leave");
+                           "print the version and exit");
   program.allow_extras()->require_subcommand(0, 1);
   program.footer(
       "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");

@@ -85,8 +85,8 @@ struct MeshCommand {
                {.name = "size-image",
                 .type = "FILE",
                 .group = kSize,
-                .help = "local bounds on circumradii: a volume of mm on its own grid; values that are\n"
-                        "not positive are no bounds",
+                .help = "local bounds on circumradii: a volume of mm on its own grid; values of 0 or less\n"
+                        "set no bound",
                 .unset = "none",
                 .uses = kOfPlaces,
                 .not_on_ranks = kNoSizesByPlace}),
@@ -104,11 +104,11 @@ struct MeshCommand {
                 .type = "GIB",
                 .group = kLimits,
                 .help = "memory of the process, GiB",
-                .unset = "80 % of what is available",
+                .unset = "80 % of the available memory",
                 .record = "max_memory_bytes",
                 .uses = kInPodm | kOnRanks | kInPython,
                 .quantity = "number of GiB",
-                .unset_on_ranks = "80 % of what is available\nover the ranks of the machine"}),
+                .unset_on_ranks = "80 % of the available memory\nover the ranks of the machine"}),
         option(&M::mesh_path,
                {.name = "output",
                 .type = "MESH",
@@ -138,7 +138,7 @@ struct MeshCommand {
                 .type = "PAGE",
                 .group = kOutput,
                 .help = "an HTML page that needs no network: options, claims, histograms of quality per\n"
-                        "label, and the mesh to turn and cut",
+                        "label, and the mesh in an interactive view",
                 .unset = "none",
                 .uses = kOfFiles,
                 .not_on_ranks = "the page needs the whole mesh"}),

@@ -51,17 +51,17 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
                                                             : std::numeric_limits<double>::infinity();
   if (memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
-        "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory{}, the limit is {:.3g} GiB; "
+        "{}: these options need about {:.2g} cells and {:.3g} GiB of memory{}; the limit is {:.3g} GiB; "
         "use a larger radius or delta, or {}",
         image_path, expected.cells, memory_bytes / kBytesPerGib, num_ranks > 1 ? " per rank" : "",
         static_cast<double>(limit_bytes) / kBytesPerGib, spelled("max-memory-gib")));
   const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells) / num_ranks;
   if (stored_cells > static_cast<double>(kMostStoredCells))
-    throw InputError(fmt::format(
-        "{}: these options ask for about {:.2g} cells{} while the mesh is made, those of the "
-        "background among them, and no more than 2^30 can be numbered; use a larger radius or delta, "
-        "or a smaller {}",
-        image_path, stored_cells, num_ranks > 1 ? " per rank" : "", spelled("max-elements")));
+    throw InputError(
+        fmt::format("{}: these options need about {:.2g} cells{} during meshing, including those of the "
+                    "background, and at most 2^30 are supported; use a larger radius or delta, "
+                    "or a smaller {}",
+                    image_path, stored_cells, num_ranks > 1 ? " per rank" : "", spelled("max-elements")));
 }
 
 // Returns the rest of the limit after program, image, transform and local sizes.

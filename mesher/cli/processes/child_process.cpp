@@ -20,7 +20,7 @@ namespace podm::cli {
 ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& asked_by,
                            const SignalThread& signals) {
   std::array<int, 2> ends;
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError(asked_by + ": no pipe can be made");
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError(asked_by + ": cannot create a pipe");
   output_ = ends[0];
   const int error = start(command, ends[1], signals);
   ::close(ends[1]);

@@ -18,9 +18,10 @@ std::vector<std::string> script_command(const std::string& script, const std::st
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
   const std::string path = (folder / PODM_SHARE / script).string();
   if (::access(kPython, X_OK) != 0)
-    throw InputError(fmt::format("{}: {} is not there; install Debian's python3", asked_by, kPython));
+    throw InputError(fmt::format("{}: {} is missing; install Debian's python3", asked_by, kPython));
   if (::access(path.c_str(), R_OK) != 0)
-    throw InputError(fmt::format("{}: {} is not there; podm is not installed whole", asked_by, path));
+    throw InputError(
+        fmt::format("{}: {} is missing; the installation of podm is incomplete", asked_by, path));
   return {kPython, "-E", "-s", "-B", path};
 }
 

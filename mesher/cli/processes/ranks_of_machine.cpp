@@ -46,8 +46,8 @@ RanksOfMachine::RanksOfMachine(Communication& ranks)
   append(message, std::span<const char>(host_name()));
   append(message, usable_processors());
   std::vector<std::string> ids;
-  for (const Bytes& told : ranks.all_gather(std::move(message))) {
-    MessageReader reader(told);
+  for (const Bytes& received : ranks.all_gather(std::move(message))) {
+    MessageReader reader(received);
     const auto id = reader.read<char>(), host = reader.read<char>();
     Place place{{id.begin(), id.end()}, {host.begin(), host.end()}, reader.read<int>()};
     const auto known = std::find(ids.begin(), ids.end(), place.boot_id);
@@ -82,10 +82,10 @@ std::vector<std::string> RanksOfMachine::warnings(int threads) const {
     if (threads_of_machine[i] <= machine.processors.size()) continue;
     const auto host =
         std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.machine == i; });
-    lines.push_back(
-        fmt::format("{}: {} ranks ask for {} threads and may use {} processors; use fewer, or unbind ranks "
-                    "(mpirun --bind-to none)",
-                    host->host, machine.num_ranks, threads_of_machine[i], machine.processors.size()));
+    lines.push_back(fmt::format(
+        "{}: {} ranks request {} threads but may use {} processors; use fewer threads, or unbind the ranks "
+        "(mpirun --bind-to none)",
+        host->host, machine.num_ranks, threads_of_machine[i], machine.processors.size()));
   }
   return lines;
 }

@@ -52,9 +52,9 @@ bool is_awaited(int number, const sigset_t& blocked) {
 
 // Does not use stdio, because a thread that waits for the reader of a full pipe may hold its lock. Never
 // waits itself.
-void tell(const StoppingSignal& signal) {
+void report(const StoppingSignal& signal) {
   const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
-                           ": the run ends early, with what there is; another signal ends it at once\n";
+                           ": the run ends early with a partial result; another signal ends it at once\n";
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
   if (poll(&errors, 1, 0) != 1 || (errors.revents & POLLOUT) == 0) return;
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // there is no reader
@@ -82,7 +82,7 @@ SignalThread::~SignalThread() {
   thread_.join();
 }
 
-void SignalThread::heed_first(bool is_quiet) {
+void SignalThread::stop_on_first_signal(bool is_quiet) {
   if (first_ != First::kEnds) return;
   is_quiet_ = is_quiet;
   first_ = First::kStops;
@@ -97,7 +97,7 @@ void SignalThread::receive() {
     First stops = First::kStops;
     if (signal == nullptr || !first_.compare_exchange_strong(stops, First::kHasStopped)) end_by(number);
     source_.request_stop();
-    if (!is_quiet_) tell(*signal);
+    if (!is_quiet_) report(*signal);
   }
 }
 

@@ -12,9 +12,9 @@ namespace podm::cli {
 
 /// At most one object exists, made before any other thread: later threads inherit the blocked signals. A
 /// signal ends the program as it would without this thread, but the thread first removes the leftovers
-/// (files/leftovers.h). After heed_first() the first SIGINT, SIGTERM or SIGHUP only requests a stop, and the
-/// next one ends the program. Signals that were ignored, blocked or handled stay so. Crashes are not
-/// affected.
+/// (files/leftovers.h). After stop_on_first_signal() the first SIGINT, SIGTERM or SIGHUP only requests a
+/// stop, and the next one ends the program. Signals that were ignored, blocked or handled stay so. Crashes
+/// are not affected.
 class SignalThread {
  public:
   SignalThread();
@@ -25,7 +25,7 @@ class SignalThread {
 
   /// Declares that from now on there is a result to keep. A quiet thread does not report the signal. Only the
   /// first call has an effect.
-  void heed_first(bool is_quiet);
+  void stop_on_first_signal(bool is_quiet);
   std::stop_token token() const { return source_.get_token(); }
   /// Returns the signal mask for programs that this program starts.
   const sigset_t& mask_before() const { return mask_before_; }

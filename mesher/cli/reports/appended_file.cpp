@@ -59,7 +59,7 @@ int write_all(int descriptor, const std::string& text) {
 int open_stream(const std::string& path) {
   const int descriptor = ::open(path.c_str(), kFlags);
   if (descriptor < 0 && errno == ENXIO)
-    throw InputError(fmt::format("cannot write {}: nobody reads it", path));
+    throw InputError(fmt::format("cannot write {}: the pipe has no reader", path));
   if (descriptor < 0) fail_to_write(path, errno);
   ::fcntl(descriptor, F_SETFL, O_APPEND);  // writes wait for a slow reader
   return descriptor;

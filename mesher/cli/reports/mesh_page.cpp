@@ -18,11 +18,11 @@ namespace {
 constexpr const char* kScript = "mesh_report";
 constexpr const char* kAskedBy = "--report";
 
-std::string told_by_script(const std::string& request, const SignalThread& signals) {
-  ScriptResult told = run_script(kScript, request, kAskedBy, signals);
-  if (signals.token().stop_requested()) throw InputError("--report: left out, as a signal asked for the end");
-  if (told.exit_code != 0) throw InputError("--report: no page can be made");
-  return std::move(told.output);
+std::string output_of_script(const std::string& request, const SignalThread& signals) {
+  ScriptResult result = run_script(kScript, request, kAskedBy, signals);
+  if (signals.token().stop_requested()) throw InputError("--report: omitted, because a signal ended the run");
+  if (result.exit_code != 0) throw InputError("--report: the page could not be made");
+  return std::move(result.output);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ void check_page(const MeshCommand& command, const SignalThread& signals) {
   if (!command.page_path.ends_with(".html"))
     throw InputError(fmt::format("--report: '{}' does not end in .html", command.page_path));
   const AtomicFile trial(command.page_path);
-  told_by_script("--check", signals);
+  output_of_script("--check", signals);
 }
 
 void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& signals) try {
@@ -41,15 +41,15 @@ void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& sig
   const std::string readable = mesh_path.extension() == ".vtu" ? mesh_path.string() : scratch / "mesh.vtu";
   if (readable != mesh_path) write_mesh(mesh, readable);
   const std::string request = scratch / "request.json";
-  AtomicFile told(request);
-  told.write(json_line({{"mesh", readable},
-                        {"name", mesh_path.filename().string()},
-                        {"record", record(run)},
-                        {"verification", run.verification},
-                        {"unmet", run.unmet()}}));
-  told.publish();
+  AtomicFile request_file(request);
+  request_file.write(json_line({{"mesh", readable},
+                                {"name", mesh_path.filename().string()},
+                                {"record", record(run)},
+                                {"verification", run.verification},
+                                {"unmet", run.unmet()}}));
+  request_file.publish();
   AtomicFile page(path);
-  page.write(told_by_script(request, signals));
+  page.write(output_of_script(request, signals));
   page.publish();
 } catch (const InputError& error) {
   throw InputError(fmt::format("{}; {} is written", error.what(), run.command.mesh_path));

@@ -55,14 +55,14 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   double others_bytes = 0;
   {
     const WorkTimer timer(threads);
-    std::shared_ptr<const VoxelStrengths> strengths;
+    std::shared_ptr<const VoxelWeights> weights;
     if (options.smoothing_mm > 0) {
       const SmoothInterfaces smoothed = smooth_interfaces(image, options.smoothing_mm, threads);
       report_on_smoothing(image, options.smoothing_mm, smoothed, threads);
-      strengths = smoothed.strengths;
+      weights = smoothed.weights;
     }
     // The transform phase includes the calls below, too.
-    const Isosurface isosurface(image, threads, strengths);
+    const Isosurface isosurface(image, threads, weights);
     foreground_bounds(image, threads);
     estimate(image, options);
     plan.transform_s = timer.seconds();
@@ -136,7 +136,7 @@ std::string thin_text(const Plan& plan, const LabelImage& image) {
                          [&](const ThinPart& part) { return part.kind == kind; });
   };
   std::string text = fmt::format(
-      "thin       what delta may lose or cut: {} whole components, {} bridges between parts that stay,\n"
+      "thin       parts that delta may lose or cut: {} whole components, {} bridges between other parts,\n"
       "           {} details: fins, tips and edges\n",
       count(ThinKind::kWhole), count(ThinKind::kBridge), count(ThinKind::kDetail));
   if (plan.thin_parts.empty()) return text;

@@ -157,12 +157,12 @@ Json workers_of(const MeshingReport& report) {
   Json workers = Json::array();
   for (const WorkerReport& worker : report.workers) {
     const Counters& counters = worker.counters;
-    Json told = {{"committed", counters.num_committed()}};
+    Json of_worker = {{"committed", counters.num_committed()}};
     for (const Count& count : kCounts)
-      if (count.by_worker) told[count.name] = counters.*count.member;
-    told.update(seconds_of(counters.overhead, "_s"));
-    told["hops_by_kind"] = hops_by_kind(counters.hops, report);
-    workers.push_back(std::move(told));
+      if (count.by_worker) of_worker[count.name] = counters.*count.member;
+    of_worker.update(seconds_of(counters.overhead, "_s"));
+    of_worker["hops_by_kind"] = hops_by_kind(counters.hops, report);
+    workers.push_back(std::move(of_worker));
   }
   return workers;
 }
@@ -211,19 +211,19 @@ Json calibration_of(const MeshingReport& report) {
 }
 
 // Returns null if R7 was not requested, or the run ended before it.
-Json perturbed_of(const MeshingReport& report) {
-  if (!report.perturbed) return nullptr;
-  const Perturbed& told = *report.perturbed;
-  const auto cells = [](const Perturbed::Cells& of) {
+Json perturbation_of(const MeshingReport& report) {
+  if (!report.perturbation) return nullptr;
+  const PerturbationReport& perturbation = *report.perturbation;
+  const auto cells = [](const PerturbationReport::Cells& of) {
     return Json{{"with_free_vertex", of.with_free_vertex}, {"without", of.without}};
   };
-  Json unmoved = {{"not_reached", told.not_reached}};
+  Json unmoved = {{"not_reached", perturbation.not_reached}};
   for (const auto& [why, name] : Names<Unmoved>::kAll)
-    unmoved[name] = told.unmoved[static_cast<std::size_t>(why)];
-  return {{"min_dihedral_deg", told.min_dihedral_deg},
-          {"max_dihedral_deg", told.max_dihedral_deg},
-          {"before", cells(told.before)},
-          {"after", cells(told.after)},
+    unmoved[name] = perturbation.unmoved[static_cast<std::size_t>(why)];
+  return {{"min_dihedral_deg", perturbation.min_dihedral_deg},
+          {"max_dihedral_deg", perturbation.max_dihedral_deg},
+          {"before", cells(perturbation.before)},
+          {"after", cells(perturbation.after)},
           {"unmoved", unmoved}};
 }
 
@@ -384,7 +384,7 @@ Json record(const MeshRun& run) {
       {"counters", counters_of(report)},
       {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
-      {"perturbed", perturbed_of(report)},
+      {"perturbed", perturbation_of(report)},
       {"smoothing", smoothing_of(report)},
       {"optimization", optimization_of(report)},
       {"promised_dihedral_deg", promised_dihedral_of(report)},

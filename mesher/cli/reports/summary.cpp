@@ -40,7 +40,7 @@ std::string facets_text(const MeshRun& run) {
     return label == kBackground ? std::string("outside") : display_name(run.image.labels[label]);
   };
   const auto& counts = run.mesh.facet_pairs;
-  std::string text = "boundary facets by what they separate\n";
+  std::string text = "boundary facets by the labels that they separate\n";
   for (std::size_t i = 0; i < std::min(counts.size(), kLongestList); ++i)
     text += fmt::format("  {:>10}  {} | {}\n", counts[i].facets, name(counts[i].labels[1]),
                         name(counts[i].labels[0]));
@@ -58,20 +58,22 @@ std::string quality_text(const Quality& quality) {
       quality.shortest_edge_mm);
 }
 
-std::string perturbed_text(const MeshingReport& report) {
-  if (!report.perturbed) return "";
-  const Perturbed& told = *report.perturbed;
+std::string perturbation_text(const MeshingReport& report) {
+  if (!report.perturbation) return "";
+  const PerturbationReport& perturbation = *report.perturbation;
   std::string text = fmt::format(
       "dihedral   cells with an angle below {:g} or above {:g} deg: {} ({} with a free vertex), before {} "
       "({})\n",
-      told.min_dihedral_deg, told.max_dihedral_deg, told.after.number(), told.after.with_free_vertex,
-      told.before.number(), told.before.with_free_vertex);
+      perturbation.min_dihedral_deg, perturbation.max_dihedral_deg, perturbation.after.number(),
+      perturbation.after.with_free_vertex, perturbation.before.number(),
+      perturbation.before.with_free_vertex);
   std::string why;
   for (const auto& [reason, name] : Names<Unmoved>::kAll)
-    if (const std::uint64_t cells = told.unmoved[static_cast<std::size_t>(reason)]; cells > 0)
+    if (const std::uint64_t cells = perturbation.unmoved[static_cast<std::size_t>(reason)]; cells > 0)
       why += fmt::format("{} {} {}", why.empty() ? "" : ",", name, cells);
-  if (told.not_reached > 0) why += fmt::format("{} not reached {}", why.empty() ? "" : ",", told.not_reached);
-  return why.empty() ? text : text + "           these stay for" + why + "\n";
+  if (perturbation.not_reached > 0)
+    why += fmt::format("{} not reached {}", why.empty() ? "" : ",", perturbation.not_reached);
+  return why.empty() ? text : text + "           they remain because of" + why + "\n";
 }
 
 std::string words(std::string name) {
@@ -91,7 +93,7 @@ std::string optimization_text(const MeshingReport& report) {
   if (!report.optimization) return "";
   const OptimizationReport& done = *report.optimization;
   const auto line = [](double least_deg, double largest_deg, std::uint64_t before, std::uint64_t now) {
-    return fmt::format("{} cells under {:g} or over {:g} deg, {} before", now, least_deg, largest_deg,
+    return fmt::format("{} cells below {:g} or above {:g} deg, {} before", now, least_deg, largest_deg,
                        before);
   };
   std::string text = fmt::format(
@@ -100,16 +102,17 @@ std::string optimization_text(const MeshingReport& report) {
       line(done.least_aim_deg, done.largest_aim_deg, done.beyond_aim_before, done.beyond_aim),
       counts_text(done.successes));
   if (done.beyond_bounds > 0)
-    text += fmt::format("           what is in the way of the first: {}\n", counts_text(done.obstacles));
+    text +=
+        fmt::format("           obstacles for cells beyond the bounds: {}\n", counts_text(done.obstacles));
   return text;
 }
 
 std::string smoothing_text(const MeshRun& run) {
   if (!run.report.smoothing) return "";
   const SmoothingReport& done = *run.report.smoothing;
-  std::string text = fmt::format(
-      "smoothed   by {:g} mm; labels by volume in mm^3 and components, of their voxels and smoothed\n",
-      done.width_mm);
+  std::string text =
+      fmt::format("smoothed   by {:g} mm; volume in mm^3 and components of each label, before and after\n",
+                  done.width_mm);
   std::vector<SmoothingReport::OfLabel> labels = done.labels;
   std::stable_sort(labels.begin(), labels.end(),
                    [](const auto& a, const auto& b) { return a.voxels_mm3 > b.voxels_mm3; });
@@ -126,9 +129,9 @@ std::string calibration_text(const MeshingReport& report) {
   const Calibration& calibration = *report.calibration;
   const std::size_t dropped = calibration.meshes.size();
   return fmt::format(
-      "target     {} cells: radius {:.6g} mm, found in {:.2f} s{}; not in the speed\n",
+      "target     {} cells: radius {:.6g} mm, found in {:.2f} s{}; the speed excludes the search\n",
       calibration.target_elements, calibration.radius_mm, calibration.seconds,
-      dropped > 0 ? fmt::format(" with {} mesh{} that missed", dropped, dropped > 1 ? "es" : "") : "");
+      dropped > 0 ? fmt::format(" after {} mesh{} that missed", dropped, dropped > 1 ? "es" : "") : "");
 }
 
 std::string sizes_by_place_text(const MeshRun& run) {
@@ -139,7 +142,7 @@ std::string sizes_by_place_text(const MeshRun& run) {
   for (const SizeNear& near : sizes.near)
     parts.push_back(fmt::format("{:.4g} mm within {:.4g} mm of labels {} | {}", near.radius_mm, near.width_mm,
                                 fmt::join(near.labels[0], ", "), fmt::join(near.labels[1], ", ")));
-  if (sizes.grade > 0) parts.push_back(fmt::format("growing by at most {:.4g} mm a mm", sizes.grade));
+  if (sizes.grade > 0) parts.push_back(fmt::format("growing by at most {:.4g} mm per mm", sizes.grade));
   return parts.empty() ? "" : fmt::format("           {}\n", fmt::join(parts, ";\n           "));
 }
 
@@ -166,7 +169,7 @@ std::string summary(const MeshRun& run) {
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
   text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report.quality) +
-          perturbed_text(report) + optimization_text(report);
+          perturbation_text(report) + optimization_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

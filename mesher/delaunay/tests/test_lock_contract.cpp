@@ -86,20 +86,20 @@ TEST_F(LockContractDeathTest, LetsReplaceUnderFourLocks) {
   EXPECT_DEATH(replace(), "is replaced with 3 of its vertices held");
 }
 
-TEST_F(LockContractDeathTest, LetsNobodyReadWhatHasDied) {
+TEST_F(LockContractDeathTest, LetsNoWorkerReadWhatHasDied) {
   hold(cell_, 4);
   attempt([&] { t_.mesh.renew(cell_, {kNoVertex, kNoVertex, kNoVertex, kNoVertex}); });
   EXPECT_DEATH(attempt([&] { t_.mesh.cell(cell_); }), "is read with 0 of its vertices held");
 }
 
-TEST_F(LockContractDeathTest, KnowsWhoseLocksTheyAre) {
+TEST_F(LockContractDeathTest, KnowsTheHolderOfALock) {
   VertexLocks others(8);
   for (const VertexId v : t_.mesh.peek_vertices(cell_)) others.try_lock(t_.mesh.vertex(v));
   EXPECT_DEATH(attempt([&] { t_.mesh.cell(cell_); }), "is read with 0 of its vertices held");
   others.unlock_all();
 }
 
-TEST_F(LockContractDeathTest, BindsNobodyOutsideOfAnAttempt) {
+TEST_F(LockContractDeathTest, BindsNoWorkerOutsideOfAnAttempt) {
   t_.mesh.set_mirror(4 * cell_ + 1, t_.mesh.cell(cell_).mirrors[1]);
 }
 

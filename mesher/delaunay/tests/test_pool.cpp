@@ -11,7 +11,7 @@ namespace {
 constexpr int kNumNodes = 3;
 
 // Workers of three nodes take ids and release arbitrary ones, as insertions and removals do.
-TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
+TEST(FreeIds, AreOfTheWorkersNodeAlone) {
   IdArena arena(1 << 20, kNumNodes, 12);
   std::vector<FreeIds> workers;
   for (NodeIndex node = 0; node < 2 * kNumNodes; ++node)
@@ -50,19 +50,19 @@ TEST(FreeIds, GoHome) {
   EXPECT_LE(arena.bound(), 2u << 12);
 }
 
-TEST(IdArena, WithholdsWhatItIsToldLast) {
+TEST(IdArena, ReducesItsCapacityByTheLastNumberGiven) {
   IdArena arena(100, 1, 12);
   arena.take(10, 0);
-  EXPECT_TRUE(arena.withhold(80));
+  EXPECT_TRUE(arena.reduce_capacity(80));
   arena.take(10, 0);
-  EXPECT_FALSE(arena.is_used_up());
+  EXPECT_FALSE(arena.is_exhausted());
   EXPECT_THROW(arena.take(1, 0), std::bad_alloc);
-  EXPECT_TRUE(arena.is_used_up());
-  EXPECT_TRUE(arena.withhold(70)) << "ten are given back";
+  EXPECT_TRUE(arena.is_exhausted());
+  EXPECT_TRUE(arena.reduce_capacity(70)) << "ten are given back";
   arena.take(10, 0);
-  EXPECT_FALSE(arena.withhold(71)) << "thirty are taken";
+  EXPECT_FALSE(arena.reduce_capacity(71)) << "thirty are taken";
   EXPECT_THROW(arena.take(1, 0), std::bad_alloc);
-  EXPECT_FALSE(arena.withhold(1000));
+  EXPECT_FALSE(arena.reduce_capacity(1000));
 }
 
 TEST(Pool, ReusesTheDyingCellsOfItsNode) {

@@ -64,7 +64,7 @@ TEST_F(Relocated, IsTheSameMesh) {
   }
 }
 
-TEST_F(Relocated, LiesWhereItWasTold) {
+TEST_F(Relocated, LiesWhereItWasMovedTo) {
   std::vector<NodeIndex> of_cell, of_vertex;
   for (CellId c = 0; c < mesh_.cell_bound(); ++c) of_cell.push_back(mesh_.node_of_cell(c));
   for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) of_vertex.push_back(mesh_.node_of_vertex(v));

@@ -19,7 +19,7 @@ TEST(VertexLocks, HoldWhatWasLockedUntilAllIsUnlocked) {
   EXPECT_TRUE(others.holds(vertices[1]));
 }
 
-TEST(VertexLocks, TellWhoHoldsWhatTheyCannotHave) {
+TEST(VertexLocks, NameTheHolderOfALockThatTheyCannotTake) {
   Vertex vertex;
   VertexLocks mine(4), others(5);
   others.try_lock(vertex);

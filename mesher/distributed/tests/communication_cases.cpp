@@ -111,10 +111,10 @@ void expect_lengths(Communication& communication, std::size_t most_bytes) {
     std::vector<Bytes> messages;
     for (int to = 0; to < size; ++to) messages.push_back(bytes_from(self, to + shift));
     const std::vector<Bytes> received = communication.all_to_all(messages);
-    const std::vector<Bytes> told = communication.all_gather(bytes_from(self, shift));
+    const std::vector<Bytes> gathered = communication.all_gather(bytes_from(self, shift));
     for (int from = 0; from < size; ++from) {
       EXPECT_TRUE(received[static_cast<std::size_t>(from)] == bytes_from(from, self + shift));
-      EXPECT_TRUE(told[static_cast<std::size_t>(from)] == bytes_from(from, shift));
+      EXPECT_TRUE(gathered[static_cast<std::size_t>(from)] == bytes_from(from, shift));
     }
   }
   std::vector<std::uint64_t> values(most_bytes / 4 + 3, static_cast<std::uint64_t>(self));
@@ -123,7 +123,7 @@ void expect_lengths(Communication& communication, std::size_t most_bytes) {
             std::vector<std::uint64_t>(values.size(), static_cast<std::uint64_t>(size * (size - 1) / 2)));
 }
 
-void expect_one_message_a_rank(Communication& communication) {
+void expect_one_message_per_rank(Communication& communication) {
   const auto size = static_cast<std::size_t>(communication.size());
   EXPECT_THROW(communication.all_to_all(std::vector<Bytes>(size - 1)), InternalError);
   EXPECT_THROW(communication.all_to_all(std::vector<Bytes>(size + 1)), InternalError);

@@ -10,7 +10,7 @@ namespace podm::test {
 void expect_random_collectives(Communication& communication, std::uint64_t seed, int num_collectives);
 /// Sends messages of zero, one and many bytes. Some have the limit of one call, a byte less, and a byte more.
 void expect_lengths(Communication& communication, std::size_t most_bytes);
-void expect_one_message_a_rank(Communication& communication);
+void expect_one_message_per_rank(Communication& communication);
 /// Checks, on this machine's clock, that no rank goes on before the last rank has arrived.
 void expect_barrier(Communication& communication);
 

@@ -52,7 +52,7 @@ TEST_P(InProcessRanks, CarryMessagesOfAllLengths) {
   run_ranks(options(), [](Communication& ranks) { test::expect_lengths(ranks, 50); });
 }
 
-TEST_P(InProcessRanks, WantOneMessageARank) { run_ranks(options(), test::expect_one_message_a_rank); }
+TEST_P(InProcessRanks, WantOneMessagePerRank) { run_ranks(options(), test::expect_one_message_per_rank); }
 
 TEST_P(InProcessRanks, NoneLeavesABarrierBeforeAllHaveCome) { run_ranks(options(), test::expect_barrier); }
 
@@ -97,9 +97,9 @@ TEST_P(InProcessRanks, WhatOneThrowsEndsAllAndKeepsItsType) {
   EXPECT_THAT(fault, testing::EndsWith(": an exception of unknown type"));
 }
 
-TEST_P(InProcessRanks, OthersAreToldWhoFailed) {
+TEST_P(InProcessRanks, OthersLearnWhichRankFailed) {
   const int last = options().num_ranks - 1;
-  std::atomic<int> told = 0;
+  std::atomic<int> num_notified = 0;
   const std::string fault = fault_of<InputError>(options(), [&](Communication& ranks) {
     for (int i = 0; i < 3; ++i) {  // a rank that goes on anyway gets the exception again
       if (i == 1 && ranks.rank() == last) throw InputError("planted");
@@ -107,12 +107,12 @@ TEST_P(InProcessRanks, OthersAreToldWhoFailed) {
         ranks.barrier();
       } catch (const RankFailed& failed) {
         EXPECT_EQ(failed.what(), fmt::format("rank {} of {} failed: planted", last, ranks.size()));
-        ++told;
+        ++num_notified;
       }
     }
   });
   EXPECT_EQ(fault, fmt::format("rank {} of {}: planted", last, options().num_ranks));
-  EXPECT_GE(told, 2 * last);
+  EXPECT_GE(num_notified, 2 * last);
 }
 
 TEST_P(SeveralRanks, DifferentCollectivesAreAFaultThatNamesBoth) {
@@ -137,7 +137,7 @@ TEST_P(SeveralRanks, SumsOfDifferentLengthsAreAFault) {
     std::vector<std::uint64_t> values(ranks.rank() == 1 ? 4 : 3);
     ranks.sum(values);
   });
-  EXPECT_THAT(fault, AnyOf(HasSubstr("of 3 values and not 4"), HasSubstr("of 4 values and not 3")));
+  EXPECT_THAT(fault, AnyOf(HasSubstr("with 3 values, not 4"), HasSubstr("with 4 values, not 3")));
 }
 
 TEST_P(SeveralRanks, OneThatEndsEarlyIsAFault) {
@@ -210,7 +210,7 @@ TEST(OneRankAtATime, TheSeedDrawsTheOrderOfEachTurn) {
   EXPECT_FALSE(std::equal(order.begin(), order.begin() + 6, order.begin() + 6));
 }
 
-TEST(OneRankAtATime, TheFirstOfTwoFailuresIsTold) {
+TEST(OneRankAtATime, TheFirstOfTwoFailuresIsReported) {
   std::set<std::string> faults;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const auto fault = [&] {

@@ -84,10 +84,11 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   EXPECT_EQ(verdict(logged.logs, GetParam()), "equal");
   EXPECT_EQ(logged.stop_reason,
             GetParam().most_cells > 0 ? StopReason::kElementLimit : StopReason::kComplete);
-  std::uint64_t num_learnt = 0;
+  std::uint64_t num_received = 0;
   for (const LogOfRank& log : logged.logs)
-    for (const LoggedOperation& entry : log.log.all.operations) num_learnt += entry.kind >= kLearntVertex;
-  EXPECT_EQ(num_learnt > 0, GetParam().is_shared);
+    for (const LoggedOperation& entry : log.log.all.operations)
+      num_received += entry.kind >= kReceivedInsertion;
+  EXPECT_EQ(num_received > 0, GetParam().is_shared);
 }
 
 TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
@@ -168,18 +169,18 @@ class SpoiltLogs : public testing::Test {
   std::vector<LogOfRank> logs_ = sound();
 };
 
-TEST_F(SpoiltLogs, AreRefusedWithALearntVertexThatIsElsewhere) {
-  int num_learnt = 0;
+TEST_F(SpoiltLogs, AreRefusedWithAReceivedVertexThatIsElsewhere) {
+  int num_received = 0;
   for (std::size_t rank = 0; rank < 3; ++rank) {
-    for (const std::size_t entry : some_entries(rank, kLearntVertex)) {
+    for (const std::size_t entry : some_entries(rank, kReceivedInsertion)) {
       logs_ = sound();
       move(rank, entry);
       EXPECT_EQ(verdict(), logs_[rank].path + ": " + operation_text(log(rank).operations[entry].sequence) +
-                               ": learns of a vertex that nobody has made");
-      ++num_learnt;
+                               ": receives a vertex that no rank has inserted");
+      ++num_received;
     }
   }
-  EXPECT_GT(num_learnt, 5);
+  EXPECT_GT(num_received, 5);
 }
 
 TEST_F(SpoiltLogs, DoNotPassWithoutAnOperation) {
@@ -228,12 +229,12 @@ TEST_F(SpoiltLogs, AreRefusedWithTwoStepsSwapped) {
   int num_swapped = 0;
   for (std::uint64_t step = 2; step <= step_of(sound()[0].log.all.operations.back().sequence); ++step) {
     logs_ = sound();
-    const auto is_learnt_in = [step](const LoggedOperation& entry) {
-      return step_of(entry.sequence) == step && entry.kind >= kLearntVertex;
+    const auto is_received_in = [step](const LoggedOperation& entry) {
+      return step_of(entry.sequence) == step && entry.kind >= kReceivedInsertion;
     };
-    if (std::ranges::none_of(log(0).operations, is_learnt_in)) continue;
+    if (std::ranges::none_of(log(0).operations, is_received_in)) continue;
     log(0) = with_steps_swapped(log(0), 1, step);
-    EXPECT_NE(verdict().find("0.log: operation 0 of step 1: learns"), std::string::npos) << verdict();
+    EXPECT_NE(verdict().find("0.log: operation 0 of step 1: receives"), std::string::npos) << verdict();
     ++num_swapped;
   }
   EXPECT_GT(num_swapped, 0);

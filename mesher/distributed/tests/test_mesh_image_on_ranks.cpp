@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "distributed/collective_errors.h"
 #include "distributed/in_process_ranks.h"
-#include "distributed/together.h"
 #include "tests/fault_of.h"
 #include "tests/images.h"
 
@@ -23,7 +23,7 @@ MeshingOptions options_with_radius(double radius_mm) {
 
 class MeshImageOnRanks : public testing::TestWithParam<int> {};
 
-TEST_P(MeshImageOnRanks, PiecesAddUpToTheWholeThatAllRanksTellOf) {
+TEST_P(MeshImageOnRanks, PiecesAddUpToTheWholeThatAllRanksReport) {
   const auto num_ranks = static_cast<std::size_t>(GetParam());
   const LabelImage image = ball(24, 9);
   std::vector<MeshingOnRanks> results(num_ranks);
@@ -76,9 +76,9 @@ TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
     EXPECT_EQ(parts[rank].spent.count("later") > 0, parts[rank].rounds.size() > 1);
     EXPECT_GT(parts[rank].spent.at("refine").computing_s, 0);
     // Time of the collectives before the first phase and after the last.
-    const double told_s = GetParam() == 1 ? 0 : 100 * (6 * std::bit_width(parts.size() - 1));
+    const double collectives_s = GetParam() == 1 ? 0 : 100 * (6 * std::bit_width(parts.size() - 1));
     EXPECT_LE(sum_s, until_end_s[rank]);
-    EXPECT_NEAR(sum_s, until_end_s[rank], told_s + 0.5);
+    EXPECT_NEAR(sum_s, until_end_s[rank], collectives_s + 0.5);
   }
 }
 
@@ -99,8 +99,8 @@ TEST(RanksOfOneProcess, ShareAnIsosurfaceAndAreEachChargedWithIt) {
   }
 }
 
-TEST(MadeOnce, IsMadeOnceWhenThatFailsTheFirstTimeAndChargedToAll) {
-  MadeOnce<int> seven;
+TEST(SharedValue, IsMadeOnceWhenThatFailsTheFirstTimeAndChargedToAll) {
+  SharedValue<int> seven;
   int num_made = 0, num_failed = 0;
   const auto reports = run_ranks({.num_ranks = 4, .one_at_a_time = true}, [&](Communication& ranks) {
     const auto make = [&] {
@@ -152,16 +152,17 @@ TEST(RanksThatDiffer, AreRefusedByAllWhereLeavesDoNotFitInTheMemoryOfOne) {
               options.leaves.size_mm = 0.3;
               options.limits.max_memory_bytes = ranks.rank() == 1 ? 64 << 20 : 1 << 30;
               mesh_image_on_ranks(image, options, ranks);
-            }).find("rank 1 of 3: a leaf size of 0.3 mm makes"),
+            }).find("rank 1 of 3: a leaf size of 0.3 mm gives"),
             std::string::npos);
 }
 
-TEST(DoTogether, TellsOfTheRankUnlessAllSayTheSame) {
-  EXPECT_EQ(refusal_by_all(
-                [](Communication& ranks) { do_together([] { throw InputError("no such file"); }, ranks); }),
+TEST(DoCollectively, NamesTheRankUnlessAllHaveTheSameError) {
+  EXPECT_EQ(refusal_by_all([](Communication& ranks) {
+              do_collectively([] { throw InputError("no such file"); }, ranks);
+            }),
             "no such file");
   const auto fail_on_one = [](Communication& ranks) {
-    do_together(
+    do_collectively(
         [&] {
           if (ranks.rank() == 1) throw InputError("disk full");
         },

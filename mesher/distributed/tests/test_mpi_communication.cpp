@@ -23,7 +23,7 @@ TEST(MpiCommunication, CarriesWhatNoOneCallTakes) {
   expect_random_collectives(*small, 7, 20);
 }
 
-TEST(MpiCommunication, WantsOneMessageARank) { expect_one_message_a_rank(*mpi_communication()); }
+TEST(MpiCommunication, WantsOneMessagePerRank) { expect_one_message_per_rank(*mpi_communication()); }
 
 TEST(MpiCommunication, NoRankLeavesABarrierBeforeAllHaveCome) { expect_barrier(*mpi_communication()); }
 

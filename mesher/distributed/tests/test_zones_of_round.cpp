@@ -71,7 +71,7 @@ class ZonesOfRound : public testing::TestWithParam<int> {
         CubePlace next = at;
         if (++next[axis] == grid_.size()[axis]) continue;
         const int part = part_of_cube[cube], beyond = part_of_cube[grid_.id(next)];
-        if (part != beyond && part != kNobody && beyond != kNobody) waiting.insert(cube);
+        if (part != beyond && part != kNoRank && beyond != kNoRank) waiting.insert(cube);
       }
     });
     return waiting;
@@ -99,7 +99,7 @@ TEST_P(ZonesOfRound, AreOfAllThatWaitsAndNothingElse) {
     const std::vector<int> rank_of = zones(waiting, cells);
     ASSERT_EQ(rank_of.size(), grid_.num_cubes());
     for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
-      ASSERT_EQ(rank_of[cube] == kNobody, !waiting.has(cube));
+      ASSERT_EQ(rank_of[cube] == kNoRank, !waiting.has(cube));
       ASSERT_LT(rank_of[cube], kRanks);
     }
   }
@@ -112,7 +112,7 @@ TEST_P(ZonesOfRound, AddTheirCellsToTheLoadOfTheirRanks) {
   const std::vector<int> rank_of = zones(waiting, kMany);
   std::vector<std::uint64_t> expected = before;
   for (const int rank : rank_of)
-    if (rank != kNobody) expected[static_cast<std::size_t>(rank)] += kMany;
+    if (rank != kNoRank) expected[static_cast<std::size_t>(rank)] += kMany;
   EXPECT_EQ(load_, expected);
 }
 
@@ -145,7 +145,7 @@ TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEndOrWhereLittleWaits) {
   const std::vector<int> rank_of = zones(waiting, GetParam() < kRoundOfConnected ? 1 : kMany);
   const std::vector<CubeId> cubes = waiting.cubes();
   std::set<int> ranks(rank_of.begin(), rank_of.end());
-  ranks.erase(kNobody);
+  ranks.erase(kNoRank);
   EXPECT_GT(ranks.size(), 2u);
   for (const CubeId a : cubes)
     for (const CubeId b : cubes)
@@ -156,7 +156,7 @@ TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEndOrWhereLittleWaits) {
 
 TEST_P(ZonesOfRound, AreNoneWhereNothingWaits) {
   const std::vector<int> rank_of = zones(CubeSet(grid_), kMany);
-  EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNobody; }));
+  EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNoRank; }));
 }
 
 // Every round must make progress even if all cells wait in one place. Where cuts do not help, there are fewer
@@ -166,7 +166,7 @@ TEST_P(ZonesOfRound, AreThereWhereAllWaitInFewCubes) {
     CubeSet waiting(grid_);
     for (const int x : places) waiting.insert(grid_.id({x, 29, 29}));
     const std::vector<int> rank_of = zones(waiting, 1000 * kMany);
-    for (const CubeId cube : waiting.cubes()) EXPECT_NE(rank_of[cube], kNobody);
+    for (const CubeId cube : waiting.cubes()) EXPECT_NE(rank_of[cube], kNoRank);
   }
 }
 

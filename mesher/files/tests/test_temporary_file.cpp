@@ -96,7 +96,7 @@ TEST_F(TemporaryFiles, WhatProcessesThatAreGoneLeftOfTheSameFileGoes) {
 }
 
 // Locks decide, because another process may have its number by now.
-TEST_F(TemporaryFiles, WhatNobodyHasLockedGoesAlthoughAProcessOfThatNumberLives) {
+TEST_F(TemporaryFiles, FilesThatNoProcessHasLockedGoAlthoughAProcessOfThatNumberLives) {
   make(of_process("a", ::getppid()));
   make(of_process("a", 1));
   write("a");

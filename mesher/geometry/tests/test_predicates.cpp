@@ -83,7 +83,7 @@ TEST(Predicates, PointsInSpheresAreThoseOfTheExactPower) {
 
 // The perturbed heights of five cospherical points have a single Delaunay triangulation. The tests from both
 // cells must agree on it.
-TEST(Predicates, CosphericalPointsAreToldApartAlikeFromAllSides) {
+TEST(Predicates, CosphericalPointsAreDistinguishedAlikeFromAllSides) {
   NearlyDegenerate points;
   int num_cospherical = 0;
   for (int n = 0; n < 40'000; ++n) {

@@ -54,7 +54,7 @@ TEST(Islands, DroppingAgainChangesNothing) {
   }
 }
 
-TEST(Islands, WhatIsLargeStaysAndWhatGoesIsTold) {
+TEST(Islands, LargeIslandsStayAndDroppedOnesAreReported) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const LabelImage before = blobs(seed), after = dropped(before, 5);
     const Components components(before);
@@ -69,8 +69,8 @@ TEST(Islands, WhatIsLargeStaysAndWhatGoesIsTold) {
           ASSERT_TRUE(is_island || is_kept);
           if (is_island) ++gone[own.label];
         }
-    for (const DroppedIslands& told : after.dropped_islands)
-      EXPECT_GE(told.volume_mm3, static_cast<double>(gone[told.label.value / 10]));
+    for (const DroppedIslands& islands : after.dropped_islands)
+      EXPECT_GE(islands.volume_mm3, static_cast<double>(gone[islands.label.value / 10]));
   }
 }
 

@@ -166,7 +166,7 @@ TEST_F(ReadImage, MetaImage) {
 
 // Such files come from programs that change the stream but not the header. In some cases more data follow the
 // stream.
-TEST_F(ReadImage, MetaImageWhoseStreamIsNotAsLongAsItsHeaderSays) {
+TEST_F(ReadImage, MetaImageWithAStreamThatIsNotAsLongAsItsHeaderSays) {
   const std::string zipped = deflated(kVoxels, 15), size = std::to_string(zipped.size());
   const auto read = [&](const std::string& announced, const std::string& tail) {
     return read_image(folder_.write("a.mha", mha_header("CompressedData = True\nCompressedDataSize = " +

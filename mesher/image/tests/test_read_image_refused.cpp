@@ -176,7 +176,7 @@ std::vector<BadFile> bad_nifti_files() {
            h.dim[2] = h.dim[3] = 1024;  // 2^31
          });
        },
-       "too large (2048 x 1024 x 1024 voxels, the most are 2147483647 in all)"},
+       "too large (2048 x 1024 x 1024 voxels, at most 2147483647 in all are supported)"},
       {"VoxelsPastTheEnd", "a.nii", [] { return changed_nifti([](auto& h) { h.vox_offset = 360; }); },
        "truncated"},
       {"NoForeground", "a.nii", [] { return nifti_file(nifti_header(), std::string(24, '\0')); },

@@ -24,9 +24,9 @@ class ReadSizeImage : public ::testing::Test {
     try {
       read_size_image(path);
     } catch (const InputError& error) {
-      const std::string told = error.what();
-      EXPECT_TRUE(told.starts_with(path + ": ")) << told;
-      return told;
+      const std::string text = error.what();
+      EXPECT_TRUE(text.starts_with(path + ": ")) << text;
+      return text;
     }
     return "was read";
   }
@@ -100,13 +100,13 @@ TEST_F(ReadSizeImage, TakesWhatIsNotAboveZeroForNoBound) {
 TEST_F(ReadSizeImage, NamesTheVoxelThatIsNotANumber) {
   auto voxels = counted<float>();
   voxels[1 + 2 * (2 + 3 * 3)] = std::numeric_limits<float>::quiet_NaN();
-  const std::string told = refusal("a.nii", nifti_of_sizes(DT_FLOAT32, voxels));
-  EXPECT_NE(told.find("voxel (1, 2, 3) is not a number"), std::string::npos) << told;
+  const std::string text = refusal("a.nii", nifti_of_sizes(DT_FLOAT32, voxels));
+  EXPECT_NE(text.find("voxel (1, 2, 3) is not a number"), std::string::npos) << text;
 }
 
 TEST_F(ReadSizeImage, RefusesWhatBoundsNothing) {
-  const std::string told = refusal("a.nii", nifti_of_sizes(DT_FLOAT32, std::vector<float>(24, -1)));
-  EXPECT_NE(told.find("no voxel has a size above 0 mm"), std::string::npos) << told;
+  const std::string text = refusal("a.nii", nifti_of_sizes(DT_FLOAT32, std::vector<float>(24, -1)));
+  EXPECT_NE(text.find("no voxel has a size above 0 mm"), std::string::npos) << text;
 }
 
 TEST_F(ReadSizeImage, RefusesWhatIsNotThreeDimensional) {

@@ -161,7 +161,7 @@ TEST(WriteNiftiHeader, VoxelsTakeTheSmallestTypeThatHoldsThem) {
   }
 }
 
-TEST(WriteNiftiHeader, WithoutItsSformTheQformTellsTheAffine) {
+TEST(WriteNiftiHeader, WithoutItsSformTheQformGivesTheAffine) {
   const ScratchFolder folder;
   const std::string file = folder.write("image.nii", "");
   for (const Affine& affine : {kAxisAligned, oblique(1), oblique(-1)}) {

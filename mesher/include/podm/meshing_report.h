@@ -11,7 +11,7 @@
 #include "podm/bounds.h"
 #include "podm/choices.h"
 #include "podm/counters.h"
-#include "podm/perturbed.h"
+#include "podm/perturbation_report.h"
 
 namespace podm {
 
@@ -167,7 +167,7 @@ struct MeshingReport {
     std::map<std::string, double> constants;
   };
   std::optional<SimulatedMachine> simulated_machine;
-  std::optional<Perturbed> perturbed;  ///< set if R7 was requested and reached
+  std::optional<PerturbationReport> perturbation;  ///< set if R7 was requested and reached
   std::vector<std::string> warnings;
 };
 

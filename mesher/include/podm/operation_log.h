@@ -26,9 +26,9 @@ namespace podm {
 inline constexpr std::uint32_t kMovedVertex = 0;
 
 /// Kinds of entries that are not operations. They log what a rank learns from other ranks between its own
-/// operations. kLearntVertex plus a VertexKind: a vertex exists. kForgottenVertex: the removed vertex is
+/// operations. kReceivedInsertion plus a VertexKind: a vertex exists. kReceivedRemoval: the removed vertex is
 /// gone.
-inline constexpr std::uint32_t kLearntVertex = 1u << 8, kForgottenVertex = 1u << 9;
+inline constexpr std::uint32_t kReceivedInsertion = 1u << 8, kReceivedRemoval = 1u << 9;
 
 /// The high bits of a sequence number are the step, from 0. A run on one machine has only step 0.
 inline constexpr unsigned kBitsInStep = 40;

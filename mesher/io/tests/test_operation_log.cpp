@@ -73,7 +73,7 @@ TEST_F(OperationLogFile, ReadsBackInSequence) {
   }
 }
 
-TEST_F(OperationLogFile, OfARankTellsWhoseItIs) {
+TEST_F(OperationLogFile, OfARankNamesItsRank) {
   OperationLogHead head = head_;
   head.mesh_sha256.clear();
   head.mesh_hash = "ef56";

@@ -195,7 +195,7 @@ TEST(CheckPath, AVersionOfGmshIsForItsFilesAlone) {
 }
 
 // Names of Abaqus sets consist of letters, digits, '_' and '-', have at most 80 characters, and ignore case.
-TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndToldOf) {
+TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndReported) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
   mesh.labels[1].name = "left kidney/2";
@@ -223,7 +223,7 @@ TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndToldOf) {
 }
 
 // CalculiX reads 20 characters of a number: a longer number would lose its exponent.
-TEST(AbaqusFile, RealsHaveAtMostTwentyCharactersAndThatIsTold) {
+TEST(AbaqusFile, RealsHaveAtMostTwentyCharactersAndThatIsReported) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
   mesh.vertices[0] = {-1.2345678901234567e-5, 0.1, -123.45678901234567};

@@ -64,11 +64,11 @@ LabelImage random_image(Random& random, std::array<int, 3> size, std::array<doub
   return image;
 }
 
-std::shared_ptr<const VoxelStrengths> random_strengths(Random& random, const LabelImage& image) {
-  auto strengths = std::make_shared<VoxelStrengths>(image.size);
+std::shared_ptr<const VoxelWeights> random_weights(Random& random, const LabelImage& image) {
+  auto weights = std::make_shared<VoxelWeights>(image.size);
   for (std::size_t v = 0; v < image.num_voxels(); ++v)
-    strengths->at(v) = static_cast<std::uint16_t>(1 + random() % VoxelStrengths::kMost);
-  return strengths;
+    weights->at(v) = static_cast<std::uint16_t>(1 + random() % VoxelWeights::kMost);
+  return weights;
 }
 
 std::vector<Phantom> smooth_phantoms() {
@@ -108,7 +108,7 @@ Point random_point(Random& random, const LabelImage& image, double margin) {
   return {x, y, z};
 }
 
-ReferenceLabel reference_label(const LabelImage& image, const Point& p, const VoxelStrengths* strengths) {
+ReferenceLabel reference_label(const LabelImage& image, const Point& p, const VoxelWeights* voxel_weights) {
   const std::array<double, 3> u = {p.x / image.spacing[0], p.y / image.spacing[1], p.z / image.spacing[2]};
   std::array<int, 3> base;
   std::array<double, 3> f;
@@ -120,9 +120,9 @@ ReferenceLabel reference_label(const LabelImage& image, const Point& p, const Vo
   for (int c = 0; c < 8; ++c) {
     const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
     const Voxel v{base[0] + i, base[1] + j, base[2] + k};
-    weights[label_of_voxel(image, v.i, v.j, v.k)] += (strengths != nullptr ? strengths->strength(v) : 1) *
-                                                     (i ? f[0] : 1 - f[0]) * (j ? f[1] : 1 - f[1]) *
-                                                     (k ? f[2] : 1 - f[2]);
+    weights[label_of_voxel(image, v.i, v.j, v.k)] +=
+        (voxel_weights != nullptr ? voxel_weights->weight(v) : 1) * (i ? f[0] : 1 - f[0]) *
+        (j ? f[1] : 1 - f[1]) * (k ? f[2] : 1 - f[2]);
   }
   ReferenceLabel best{0, -1};
   double weight = -1, next = 0;
@@ -139,10 +139,9 @@ ReferenceLabel reference_label(const LabelImage& image, const Point& p, const Vo
   return best;
 }
 
-std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
-                                     const VoxelStrengths* strengths) {
+std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel, const VoxelWeights* weights) {
   using Place = std::array<int, 3>;  // in the lattice
-  const auto label = [&](const Point& p) { return reference_label(image, p, strengths).label; };
+  const auto label = [&](const Point& p) { return reference_label(image, p, weights).label; };
   // The lattice avoids voxel centers, where its lines would lie in block faces.
   const auto coordinate = [&](const Place& n, std::size_t axis) {
     return (-1 + (n[axis] + 0.37) / per_voxel) * image.spacing[axis];
@@ -192,14 +191,13 @@ double distance_to_nearest(const std::vector<Point>& points, const Point& p) {
   return std::sqrt(squared);
 }
 
-bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels,
-                      const VoxelStrengths* strengths) {
-  std::set<LabelIndex> labels{reference_label(image, p, strengths).label};
+bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels, const VoxelWeights* weights) {
+  std::set<LabelIndex> labels{reference_label(image, p, weights).label};
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j)
       for (int k = -1; k <= 1; ++k) {
         const Vector d{i * image.spacing[0], j * image.spacing[1], k * image.spacing[2]};
-        labels.insert(reference_label(image, p + voxels * d, strengths).label);
+        labels.insert(reference_label(image, p + voxels * d, weights).label);
       }
   return labels.size() > 1;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/point.h"
-#include "isosurface/voxel_strengths.h"
+#include "isosurface/voxel_weights.h"
 #include "podm/label_image.h"
 
 namespace podm::test {
@@ -25,7 +25,7 @@ LabelImage random_image(Random& random, std::array<int, 3> size, std::array<doub
                         unsigned num_labels, double coherence);
 
 /// Independent random weights of all voxels.
-std::shared_ptr<const VoxelStrengths> random_strengths(Random& random, const LabelImage& image);
+std::shared_ptr<const VoxelWeights> random_weights(Random& random, const LabelImage& image);
 
 struct Phantom {
   std::string name;
@@ -42,21 +42,21 @@ struct ReferenceLabel {
   LabelIndex label;
   double lead;  // its weight minus the next greatest
 };
-/// The label by definition: adds up the weights of the eight voxels around p by label. `strengths` are the
+/// The label by definition: adds up the weights of the eight voxels around p by label. `weights` are the
 /// voxel weights, here and below; null if all are 1.
 ReferenceLabel reference_label(const LabelImage& image, const Point& p,
-                               const VoxelStrengths* strengths = nullptr);
+                               const VoxelWeights* weights = nullptr);
 
 /// Points of the isosurface: the label changes along the lines of a lattice with `per_voxel` lines per voxel.
 /// Sorted by x.
 std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
-                                     const VoxelStrengths* strengths = nullptr);
+                                     const VoxelWeights* weights = nullptr);
 
 /// `points` must be sorted by x.
 double distance_to_nearest(const std::vector<Point>& points, const Point& p);
 
 /// True if the label changes within `voxels` of p.
 bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels,
-                      const VoxelStrengths* strengths = nullptr);
+                      const VoxelWeights* weights = nullptr);
 
 }  // namespace podm::test

@@ -52,9 +52,9 @@ void expect_equals_brute_force(const LabelImage& image) {
     const std::size_t feature = image.index(nearest.i, nearest.j, nearest.k);
     const auto offset = features.offset_to_nearest(features.brick_of(at), at);
     if (offset) {
-      const std::size_t told = image.index(at.i + offset->i, at.j + offset->j, at.k + offset->k);
-      ASSERT_TRUE(std::binary_search(surface.begin(), surface.end(), told));
-      ASSERT_NEAR(squared_mm(image, v, told), squared_mm(image, v, feature), 1e-12);
+      const std::size_t found = image.index(at.i + offset->i, at.j + offset->j, at.k + offset->k);
+      ASSERT_TRUE(std::binary_search(surface.begin(), surface.end(), found));
+      ASSERT_NEAR(squared_mm(image, v, found), squared_mm(image, v, feature), 1e-12);
     }
     ASSERT_TRUE(std::binary_search(surface.begin(), surface.end(), feature));
     double nearest2 = std::numeric_limits<double>::infinity();

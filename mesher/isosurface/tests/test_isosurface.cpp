@@ -41,7 +41,7 @@ std::vector<LabelImage> noisy_images() {
 // An image and its voxel weights.
 struct Sample {
   LabelImage image;
-  std::shared_ptr<const VoxelStrengths> strengths;
+  std::shared_ptr<const VoxelWeights> weights;
 };
 
 std::vector<Sample> noisy_samples() {
@@ -49,7 +49,7 @@ std::vector<Sample> noisy_samples() {
   std::vector<Sample> samples;
   for (LabelImage& image : noisy_images()) {
     samples.push_back({image, nullptr});
-    samples.push_back({image, random_strengths(random, image)});
+    samples.push_back({image, random_weights(random, image)});
   }
   return samples;
 }
@@ -60,7 +60,7 @@ std::vector<Sample> smooth_samples() {
   for (Phantom& phantom : smooth_phantoms()) {
     phantom.image.labels.resize(3);
     samples.push_back({phantom.image, nullptr});
-    samples.push_back({phantom.image, smooth_interfaces(phantom.image, 1.5, 1).strengths});
+    samples.push_back({phantom.image, smooth_interfaces(phantom.image, 1.5, 1).weights});
   }
   return samples;
 }
@@ -71,11 +71,11 @@ double shortest_voxel_side(const LabelImage& image) {
 
 TEST(IsosurfaceLabel, EqualsTheDefinition) {
   Random random(3);
-  for (const auto& [image, strengths] : noisy_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
+  for (const auto& [image, weights] : noisy_samples()) {
+    const Isosurface isosurface(image, 1, weights);
     for (int n = 0; n < 3000; ++n) {
       const Point p = random_point(random, image, n % 10 == 0 ? 30 : 1);
-      const ReferenceLabel expected = reference_label(image, p, strengths.get());
+      const ReferenceLabel expected = reference_label(image, p, weights.get());
       if (expected.lead > 1e-12) {
         ASSERT_EQ(isosurface.label_at(p), expected.label);
       }
@@ -208,9 +208,9 @@ TEST(IsosurfaceDistance, NeverExceedsTheDistanceToAnySurfacePoint) {
   Random random(5);
   std::vector<Sample> samples = noisy_samples();
   for (Sample& sample : smooth_samples()) samples.push_back(std::move(sample));
-  for (const auto& [image, strengths] : samples) {
-    const Isosurface isosurface(image, 1, strengths);
-    const std::vector<Point> surface = sample_isosurface(image, 3, strengths.get());
+  for (const auto& [image, weights] : samples) {
+    const Isosurface isosurface(image, 1, weights);
+    const std::vector<Point> surface = sample_isosurface(image, 3, weights.get());
     for (int n = 0; n < 400; ++n) {
       const Point p = random_point(random, image, n % 10 == 0 ? 30 : 2);
       const double radius = uniform(random, 0, 3) * shortest_voxel_side(image);
@@ -221,13 +221,13 @@ TEST(IsosurfaceDistance, NeverExceedsTheDistanceToAnySurfacePoint) {
   }
 }
 
-TEST(IsosurfaceDistance, TellsInTheGridWhetherItIsAboveTheRadius) {
-  for (const auto& [image, strengths] : smooth_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
-    const std::vector<Point> surface = sample_isosurface(image, 2, strengths.get());
+TEST(IsosurfaceDistance, IsComparedWithTheRadiusInTheGrid) {
+  for (const auto& [image, weights] : smooth_samples()) {
+    const Isosurface isosurface(image, 1, weights);
+    const std::vector<Point> surface = sample_isosurface(image, 2, weights.get());
     // The bound is derived from surface voxels.
     const double voxel_diagonal =
-        (strengths ? 2 : 1) * std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
+        (weights ? 2 : 1) * std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
     Random random(6);
     for (int n = 0; n < 300; ++n) {
       const Point p = random_point(random, image, 0);
@@ -241,8 +241,8 @@ TEST(IsosurfaceDistance, TellsInTheGridWhetherItIsAboveTheRadius) {
 
 TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
   Random random(7);
-  for (const auto& [image, strengths] : noisy_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
+  for (const auto& [image, weights] : noisy_samples()) {
+    const Isosurface isosurface(image, 1, weights);
     for (int n = 0; n < 500; ++n) {
       const Point p = random_point(random, image, 2);
       const double radius = uniform(random, 0, 4);
@@ -250,7 +250,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
       if (!z) continue;
       ASSERT_LE(distance(p, *z), radius * (1 + 1e-12));
       ASSERT_GE(distance(p, *z), isosurface.distance_lower_bound(p, radius) * (1 - 1e-9));
-      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels, strengths.get()));
+      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels, weights.get()));
     }
   }
 }
@@ -258,8 +258,8 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
 // The excess over the distance to the nearest point, mm, in ascending order.
 std::vector<double> excess_mm(const Sample& sample) {
   const LabelImage& image = sample.image;
-  const Isosurface isosurface(image, 1, sample.strengths);
-  const std::vector<Point> surface = sample_isosurface(image, 6, sample.strengths.get());
+  const Isosurface isosurface(image, 1, sample.weights);
+  const std::vector<Point> surface = sample_isosurface(image, 6, sample.weights.get());
   Random random(8);
   std::vector<double> excess;
   for (int n = 0; n < 10'000; ++n) {
@@ -305,9 +305,9 @@ TEST(ClosestPoint, IsNearByTheLongestSide) {
 constexpr double kFarExcess = 4;
 
 TEST(ClosestPoint, IsNearFromFarOutside) {
-  for (const auto& [image, strengths] : smooth_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
-    const std::vector<Point> surface = sample_isosurface(image, 4, strengths.get());
+  for (const auto& [image, weights] : smooth_samples()) {
+    const Isosurface isosurface(image, 1, weights);
+    const std::vector<Point> surface = sample_isosurface(image, 4, weights.get());
     const double side = shortest_voxel_side(image);
     Random random(13);
     for (int n = 0; n < 300; ++n) {
@@ -321,10 +321,10 @@ TEST(ClosestPoint, IsNearFromFarOutside) {
 
 TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
   int number = 0;
-  for (const auto& [image, strengths] : smooth_samples()) {
+  for (const auto& [image, weights] : smooth_samples()) {
     SCOPED_TRACE(number++);
-    const Isosurface isosurface(image, 1, strengths);
-    const std::vector<Point> surface = sample_isosurface(image, 4, strengths.get());
+    const Isosurface isosurface(image, 1, weights);
+    const std::vector<Point> surface = sample_isosurface(image, 4, weights.get());
     const double side = shortest_voxel_side(image);
     Random random(9);
     int num_missed = 0;
@@ -334,14 +334,14 @@ TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
       num_missed += !closest_point(isosurface, p, nearest / 0.95);
       EXPECT_TRUE(closest_point(isosurface, p, nearest + kGreatestExcess * side)) << nearest;
     }
-    EXPECT_LE(num_missed, strengths ? 150 : 100);
+    EXPECT_LE(num_missed, weights ? 150 : 100);
   }
 }
 
 TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
   Random random(10);
-  for (const auto& [image, strengths] : noisy_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
+  for (const auto& [image, weights] : noisy_samples()) {
+    const Isosurface isosurface(image, 1, weights);
     for (int n = 0; n < 2000; ++n) {
       const Point a = random_point(random, image, n % 10 == 0 ? 1000 : 1), b = random_point(random, image, 1);
       const auto z = isosurface.segment_intersection(a, b);
@@ -355,7 +355,7 @@ TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
       const double step = kOnSurfaceVoxels * shortest_voxel_side(image) / length;
       if (t < step || t > 1 - step) continue;
       ASSERT_EQ(isosurface.label_at(a + (t - step) * (b - a)), isosurface.label_at(a));
-      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels, strengths.get()));
+      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels, weights.get()));
       for (int i = 1; i < 20; ++i) {
         ASSERT_EQ(isosurface.label_at(a + (i / 20.0) * (t - step) * (b - a)), isosurface.label_at(a));
       }
@@ -365,8 +365,8 @@ TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
 
 TEST(SegmentIntersection, IsThereIfTheRestIsCrossedWhereNoIsosurfaceIsNear) {
   Random random(14);
-  for (const auto& [image, strengths] : noisy_samples()) {
-    const Isosurface isosurface(image, 1, strengths);
+  for (const auto& [image, weights] : noisy_samples()) {
+    const Isosurface isosurface(image, 1, weights);
     int num_asked = 0;
     for (int n = 0; n < 20'000 && num_asked < 1000; ++n) {
       const Point a = random_point(random, image, 1), b = random_point(random, image, 1);

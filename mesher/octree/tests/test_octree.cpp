@@ -109,7 +109,7 @@ TEST_P(OctreeOfSeed, LeafAtFindsTheLeafThatHasThePoint) {
   EXPECT_NE(whole.leaf_at(0.5 * (seeded.low + seeded.high)), kNoLeaf);
 }
 
-TEST_P(OctreeOfSeed, RingsAreTheLeavesThatTouchAndThoseBeyondWhoseRegionsMeet) {
+TEST_P(OctreeOfSeed, RingsAreTheLeavesThatTouchAndThoseBeyondWithRegionsThatMeet) {
   const std::vector<GridCube> cubes = cubes_of(whole);
   for (int i = 0; i < 20 && pruned.num_leaves() > 0; ++i) {
     const LeafId leaf = static_cast<LeafId>(seeded.random() % pruned.num_leaves());

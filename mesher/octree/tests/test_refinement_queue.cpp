@@ -80,7 +80,7 @@ TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
         return is_free(pending_leaf) && (order != LeafOrder::kHome || queue.home_of(pending_leaf) == node);
       };
       ASSERT_EQ(leaf.has_value(), std::any_of(pending.begin(), pending.end(), is_for_node));
-      ASSERT_TRUE(leaf || pending.empty() || !active.empty()) << "all wait, for nobody";
+      ASSERT_TRUE(leaf || pending.empty() || !active.empty()) << "all wait, but no leaf is active";
       if (!leaf) return;
       EXPECT_TRUE(is_free(*leaf));
       EXPECT_EQ(pending.erase(*leaf), 1u);

@@ -28,7 +28,7 @@ class MeshToOptimize {
  public:
   MeshToOptimize(const LabelImage& image, double radius_mm, double delta_mm)
       : isosurface_(image, 1),
-        parameters_{CellQuality(aim_over(kBounds)), kBounds,
+        parameters_{OptimizationQuality(aim_over(kBounds)), kBounds,
                     SizeField(std::vector<double>(image.labels.size(), radius_mm)), delta_mm} {
     const Problem problem{.isosurface = isosurface_,
                           .object = foreground_bounds(image),

@@ -11,7 +11,7 @@
 namespace podm::test {
 namespace {
 
-const CellQuality kQuality(DihedralBounds(8, 165));
+const OptimizationQuality kQuality(DihedralBounds(8, 165));
 constexpr LabelBound kAnySize(1e300);
 
 double six_volumes(const std::vector<Point>& p, const LocalCell& c) {

@@ -48,9 +48,9 @@ def run_program(folder, arguments):
     command = [arguments.program, "mesh", folder / "image.nii", "-o", folder / "mesh.vtu", "--radius",
                str(arguments.radius), "--threads", str(arguments.threads)]
     start = time.monotonic()
-    told = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    stderr = subprocess.run(command, check=True, capture_output=True, text=True).stderr
     seconds = time.monotonic() - start
-    return {"seconds": seconds, "peak": float(re.search(r"^memory +(\S+) GiB", told, re.MULTILINE)[1]) * 2**30}
+    return {"seconds": seconds, "peak": float(re.search(r"^memory +(\S+) GiB", stderr, re.MULTILINE)[1]) * 2**30}
 
 
 def make_image(folder, program, size):

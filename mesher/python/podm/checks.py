@@ -36,7 +36,7 @@ def path_bytes(keyword: str, path: Any) -> bytes:
 
 def text_bytes(keyword: str, text: Any) -> bytes:
     """Returns the text in UTF-8."""
-    return _encoded(keyword, "a text", text, str.encode)
+    return _encoded(keyword, "text", text, str.encode)
 
 
 def _encoded(keyword: str, expected: str, text: Any, encode: Callable[[Any], bytes]) -> bytes:

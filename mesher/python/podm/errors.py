@@ -26,7 +26,7 @@ class Interrupted(KeyboardInterrupt):
     """
 
     mesh: Mesh
-    """The mesh so far: valid, but coarser than asked for where refinement had not been yet."""
+    """The mesh so far: valid, but coarser than requested where it was not yet refined."""
 
     def __init__(self, mesh: Mesh) -> None:
         super().__init__(f"meshing was interrupted: {mesh!r}")

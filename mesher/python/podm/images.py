@@ -23,7 +23,7 @@ def voxels_and_affine(labels: Any, affine: Any, spacing: Any) -> tuple[np.ndarra
         raise Error("affine and spacing: one of them is expected, not both")
     if hasattr(labels, "dataobj") and hasattr(labels, "affine"):
         if affine is not None or spacing is not None:
-            raise Error("labels: the image has an affine of its own, so that neither affine nor spacing is expected")
+            raise Error("labels: the image has an affine of its own, so neither affine nor spacing is expected")
         affine = _affine_of_nibabel(labels)
         labels = labels.dataobj
     return _voxels(labels), _matrix(affine) if affine is not None else _diagonal(spacing)
@@ -41,7 +41,7 @@ def _voxels(labels: Any) -> np.ndarray:
     try:
         array = np.asanyarray(labels)
     except (TypeError, ValueError) as error:
-        raise Error(f"labels: a 3-D array of integers is expected; numpy makes none of this: {error}") from error
+        raise Error(f"labels: a 3-D array of integers is expected; numpy cannot convert this value: {error}") from error
     if isinstance(array, np.ma.MaskedArray):
         raise Error("labels: an array without a mask is expected; fill it with the background, as labels.filled(0)")
     if array.dtype == bool:

@@ -24,7 +24,7 @@ def option_keywords():
     return {option["keyword"] for option in OPTIONS}
 
 
-def signature_told(function):
+def documented_signature(function):
     """Returns the definition in the first line of pybind11's docstring."""
     return ast.parse(f"def {function.__doc__.splitlines()[0]}: ...").body[0]
 
@@ -40,7 +40,7 @@ class DocumentationTest(unittest.TestCase):
     def test_every_option_is_a_keyword_and_every_keyword_an_option(self):
         self.assertEqual(set(inspect.signature(podm.mesh).parameters) - OF_THE_IMAGE, option_keywords())
 
-    def test_no_default_is_told_twice(self):
+    def test_no_default_is_stated_twice(self):
         """The program has the defaults: a keyword's own default only means that it was not given."""
         defaults = {parameter.default for parameter in inspect.signature(podm.mesh).parameters.values()}
         self.assertEqual(defaults, {inspect.Parameter.empty, None, False})
@@ -56,7 +56,7 @@ class DocumentationTest(unittest.TestCase):
         of_plan = {option["keyword"] for option in OPTIONS if "plan" in option["uses"] or option["group"] == "Labels"}
         self.assertEqual(keywords, of_plan)
 
-    def test_help_tells_of_every_option_with_its_default(self):
+    def test_help_lists_every_option_with_its_default(self):
         text = podm.mesh.__doc__
         for keyword in option_keywords():
             self.assertRegex(text, rf"(?m)^ +{keyword} ")
@@ -96,7 +96,7 @@ class DocumentationTest(unittest.TestCase):
                 self.assertEqual([decorator.id for decorator in node.decorator_list], ["property"], name)
                 self.assertIsInstance(members[name], property, name)
             else:
-                self.assertEqual(signature_of(node), signature_of(signature_told(members[name])), name)
+                self.assertEqual(signature_of(node), signature_of(documented_signature(members[name])), name)
 
     def test_the_generated_stub_has_the_keywords_of_both_functions(self):
         stub = ast.parse(pathlib.Path(podm.__file__).with_name("meshing.pyi").read_text())

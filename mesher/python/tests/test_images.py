@@ -81,7 +81,7 @@ class ImagesTest(TestCase):
             center = np.average(mesh.points[cells].mean(axis=1), axis=0, weights=weights)
             np.testing.assert_allclose(center, expected, atol=0.3)
 
-    def test_a_sheared_affine_is_meshed_as_by_the_program_which_tells_what_shear_spoils(self):
+    def test_a_sheared_affine_is_meshed_as_by_the_program_which_warns_what_shear_spoils(self):
         sheared = AFFINE @ np.array([[1, 0.5, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
         of_program = self.record_of_program(self.nifti(affine=sheared), "--radius", 2)
         with self.assertWarnsRegex(UserWarning, "radius-edge ratio"):
@@ -92,7 +92,7 @@ class ImagesTest(TestCase):
         volume = podm.mesh(balls(), affine=AFFINE, radius=2).quality()["volume"].sum()
         np.testing.assert_allclose(mesh.quality()["volume"].sum(), volume, rtol=0.05)
 
-    def test_nibabels_unit_is_heeded(self):
+    def test_nibabels_unit_is_respected(self):
         image = nibabel.Nifti1Image(balls(), AFFINE)
         image.header.set_xyzt_units("micron")
         in_mm = podm.mesh(balls(), affine=AFFINE).points

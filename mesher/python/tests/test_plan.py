@@ -32,7 +32,7 @@ class Plan(unittest.TestCase):
         labels = np.zeros((20, 20, 20), np.uint8)
         labels[4:16, 4:16, 4:16] = 1
         labels[0, 0, 0] = 3
-        with self.assertWarnsRegex(UserWarning, "label 3 is dropped whole, 1 mm"):
+        with self.assertWarnsRegex(UserWarning, "label 3 is dropped entirely, 1 mm"):
             podm.plan(labels, drop_islands=5)
 
     def test_bad_arguments_are_refused(self):

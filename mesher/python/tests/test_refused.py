@@ -72,8 +72,8 @@ class RefusedTest(TestCase):
                 self.assert_refused(f"{keyword}: the name of a file, without NUL", repr(text), **{keyword: text})
             for keyword, value in (("names", {3: text}), ("radius_of", {text: 2}), ("merge", {text: [3]}),
                                    ("keep", text), ("algorithm", text)):
-                self.assert_refused(f"{keyword}: a text, without NUL", **{keyword: value})
-        self.assert_refused("names: a text, without NUL", names={3: "\udcff"})
+                self.assert_refused(f"{keyword}: text, without NUL", **{keyword: value})
+        self.assert_refused("names: text, without NUL", names={3: "\udcff"})
 
     def test_names_of_no_label(self):
         self.assert_refused("labels: no label 'livr'", "did you mean 'liver'", names={3: "liver"},
@@ -85,9 +85,9 @@ class RefusedTest(TestCase):
         self.assert_refused("keep", "label 5", keep=[5])
         self.assert_refused("keep", "label values", keep=2.5)
         for values in ([], (), np.array([], int), [-1], -1, [2**32], [True], True, np.True_, ["3"]):
-            self.assert_refused("keep: one or some label values", keep=values)
-            self.assert_refused("drop: one or some label values", drop=values)
-            self.assert_refused("merge: one or some label values", merge={"both": values})
+            self.assert_refused("keep: one or several label values", keep=values)
+            self.assert_refused("drop: one or several label values", drop=values)
+            self.assert_refused("merge: one or several label values", merge={"both": values})
         self.assert_refused("merge", merge=[3, 7])
         self.assert_refused("merge: a name is expected, not 5", merge={5: [3, 7]})
         self.assert_refused("radius_of", "name or value", radius_of={-1: 2})

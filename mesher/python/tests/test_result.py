@@ -19,7 +19,7 @@ class ResultTest(TestCase):
     def setUpClass(cls):
         cls.mesh = podm.mesh(balls(), affine=AFFINE, radius=1.5, names={3: "liver"})
 
-    def test_arrays_have_the_shapes_and_types_that_are_told(self):
+    def test_arrays_have_the_documented_shapes_and_types(self):
         mesh = self.mesh
         num_points, num_cells, num_facets = (mesh.record[key] for key in ("vertices", "cells", "boundary_facets"))
         for array, shape, dtype in ((mesh.points, (num_points, 3), np.float64), (mesh.cells, (num_cells, 4), np.uint32),
@@ -98,13 +98,13 @@ class ResultTest(TestCase):
         np.testing.assert_array_equal(read.cell_data_dict["label"]["tetra"].ravel(), self.mesh.labels)
         np.testing.assert_allclose(read.points, self.mesh.points, rtol=1e-12)
 
-    def test_what_a_format_loses_is_told(self):
+    def test_what_a_format_loses_is_reported(self):
         named = podm.mesh(balls(), names={3: "Leber (links)"})
-        for mesh, name, loss in ((named, "loss.inp", "sets hold no such names"),
+        for mesh, name, loss in ((named, "loss.inp", "were changed for sets"),
                                  (podm.mesh(balls(), names={3: "l" * 256}), "loss.exo", "cut to 255 bytes")):
-            with self.assertWarnsRegex(UserWarning, rf"{name}: .*{loss}") as told:
+            with self.assertWarnsRegex(UserWarning, rf"{name}: .*{loss}") as warned:
                 mesh.save(self.folder / name)
-            self.assertEqual(told.filename, __file__)
+            self.assertEqual(warned.filename, __file__)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             named.save(self.folder / "loss.exo")
@@ -191,7 +191,7 @@ class ResultTest(TestCase):
         self.assertEqual(json.loads(json.dumps(record)), record)
 
     def test_a_limit_ends_a_run_early_with_a_valid_mesh(self):
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
             mesh = podm.mesh("phantom:spheres@64", radius=0.5, max_elements=5000)
         self.assertFalse(mesh.is_complete)
@@ -199,10 +199,10 @@ class ResultTest(TestCase):
         self.assertIn("ended early: element limit", repr(mesh))
         self.assertIn("element limit", " ".join(mesh.unmet))
         self.assertTrue(any("element limit" in str(warning.message) and warning.filename == __file__
-                            for warning in told))
+                            for warning in warned))
         self.assert_valid(mesh)
 
-    def test_text_tells_the_essentials(self):
+    def test_text_has_the_essentials(self):
         mesh = self.mesh
         self.assertIn(f"{len(mesh.cells)} cells", repr(mesh))
         self.assertIn("liver", repr(mesh))

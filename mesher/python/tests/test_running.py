@@ -22,27 +22,27 @@ class Stop(Exception):
 
 
 class ProgressTest(TestCase):
-    def test_the_callback_is_told_of_phases_by_the_calling_thread_some_times_a_second(self):
-        told, threads = [], set()
+    def test_the_callback_gets_phases_on_the_calling_thread_some_times_per_second(self):
+        calls, threads = [], set()
 
         def progress(now):
-            told.append((now.phase, now.fraction, now.cells, now.seconds))
+            calls.append((now.phase, now.fraction, now.cells, now.seconds))
             threads.add(threading.get_ident())
 
         start = time.monotonic()
         podm.mesh(**LONG, progress=progress)
         seconds = time.monotonic() - start
         self.assertEqual(threads, {threading.get_ident()})
-        self.assertIn("refine", {phase for phase, *_ in told})
-        self.assertLessEqual(len(told), 11 * seconds + 2)
-        self.assertTrue(all(0 <= fraction <= 1 for _, fraction, *_ in told))
-        self.assertEqual([now[3] for now in told], sorted(now[3] for now in told))
+        self.assertIn("refine", {phase for phase, *_ in calls})
+        self.assertLessEqual(len(calls), 11 * seconds + 2)
+        self.assertTrue(all(0 <= fraction <= 1 for _, fraction, *_ in calls))
+        self.assertEqual([now[3] for now in calls], sorted(now[3] for now in calls))
 
-    def test_a_run_of_no_time_is_told_of_too(self):
-        told = []
-        podm.mesh(balls(), progress=told.append)
-        self.assertGreater(len(told), 0)
-        self.assertIn("podm.Progress(phase=", repr(told[0]))
+    def test_a_run_of_no_time_is_reported_too(self):
+        calls = []
+        podm.mesh(balls(), progress=calls.append)
+        self.assertGreater(len(calls), 0)
+        self.assertIn("podm.Progress(phase=", repr(calls[0]))
 
     def test_what_the_callback_raises_ends_the_run_and_is_raised(self):
         def progress(now):

@@ -53,7 +53,7 @@ TEST(CostFactor, RefusesWhatIsNone) {
   const auto fault = [](const std::string& text) {
     return fault_of<TopologyError>([&] { CostFactor::parse(text); });
   };
-  EXPECT_THAT(fault("speed=2"), HasSubstr("no constant 'speed': core_speed, "));
+  EXPECT_THAT(fault("speed=2"), HasSubstr("unknown constant 'speed': core_speed, "));
   for (const std::string text :
        {"retries", "retries=", "retries=a", "retries=2x", "retries=-1", "retries=1e4", "retries=nan"})
     EXPECT_THAT(fault(text), HasSubstr("is not NAME=FACTOR")) << text;

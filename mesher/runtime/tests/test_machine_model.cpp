@@ -56,12 +56,12 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(place, old.size(), by);
 }
 
-// Returns the number of ways through each station, without the ways that end there.
-std::vector<int> ways_through(const MachineModel& model) {
-  std::vector<int> ways(model.stations.size());
+// Returns the number of paths through each station, without the paths that end there.
+std::vector<int> paths_through(const MachineModel& model) {
+  std::vector<int> paths(model.stations.size());
   for (const std::vector<int>& route : model.routes)
-    for (std::size_t i = 1; i + 1 < route.size(); ++i) ++ways[route[i]];
-  return ways;
+    for (std::size_t i = 1; i + 1 < route.size(); ++i) ++paths[route[i]];
+  return paths;
 }
 
 void expect_consistent(const MachineModel& model) {
@@ -120,10 +120,11 @@ TEST(MachineModel, OfBlacklightIsAsDocumented) {
 }
 
 TEST(MachineModel, EqualWaysShareTheLoad) {
-  const std::vector<int> ways = ways_through(MachineModel::from_file(kMachines + "/blacklight.toml"));
-  EXPECT_EQ(ways[16], ways[17]) << "routers";
-  EXPECT_EQ(std::set<int>(ways.begin(), ways.begin() + 16).size(), 1u) << "hubs of 16 blades that are alike";
-  const std::vector<int> around = ways_through(model_of(kRing));
+  const std::vector<int> paths = paths_through(MachineModel::from_file(kMachines + "/blacklight.toml"));
+  EXPECT_EQ(paths[16], paths[17]) << "routers";
+  EXPECT_EQ(std::set<int>(paths.begin(), paths.begin() + 16).size(), 1u)
+      << "hubs of 16 blades that are alike";
+  const std::vector<int> around = paths_through(model_of(kRing));
   EXPECT_EQ(std::accumulate(around.begin(), around.end(), 0), 4) << "each node to the opposite one";
   EXPECT_EQ(*std::max_element(around.begin(), around.end()), 1);
 }
@@ -179,39 +180,39 @@ TEST_P(RefusedMachines, AreRefusedWithTheirPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     MachineModel, RefusedMachines,
-    testing::Values(
-        Fault{"name = \"one\"", "name = 1", "1", "name must be a non-empty string"},
-        Fault{"name = \"one\"", "colour = 'red'\nname = 'a'", "1", "no key 'colour'"},
-        Fault{"name = \"one\"", "name = 'a", "1", ""},
-        Fault{"core_speed", "cor\xC3\xA9_speed", "6:4", "ASCII"},
-        Fault{"sockets_per_node = 2\n", "", "2", "needs the key 'sockets_per_node'"},
-        Fault{"sockets_per_node = 2", "sockets_per_node = 2.0", "3", "must be an integer"},
-        Fault{"cores_per_socket = 4", "cores_per_socket = 0", "4", "from 1 to"},
-        Fault{"cores_per_socket = 4", "cores_per_socket = 99999", "4", "from 1 to"},
-        Fault{"clock_ghz = 2.0", "clock_ghz = nan", "5", "must be a number"},
-        Fault{"clock_ghz = 2.0", "clock_ghz = inf", "5", "must be a number"},
-        Fault{"clock_ghz = 2.0", "clock_mhz = 2000", "2", "needs the key 'clock_ghz'"},
-        Fault{"core_speed = 0.5", "core_speed = -1", "6", "must be a number from"},
-        Fault{"level = 3", "level = 1", "7", "from the fastest to the slowest"},
-        Fault{"cycles = 40", "cycles = 3", "7", "from the fastest to the slowest"},
-        Fault{"cores = 4,", "cores = 9,", "7", "from 1 to 8"},
-        Fault{"gib_per_node = 1", "gib_per_node = 0", "9", "gib_per_node"},
-        Fault{"local_cycles = 200", "local_cycles = 30", "10", "slower than any cache"},
-        Fault{"cycles_per_hop = 1000\n", "", "8", "needs the key 'cycles_per_hop'"},
-        Fault{"miss_share = 0.25", "miss_share = 1.5", "12", "from 0 to 1"},
-        Fault{"wake_us = 5", "wake_us = \"5\"", "14", "wake_us must be a number"},
-        Fault{"nodes = 4", "nodes = 400", "17", "from 1 to 256"},
-        Fault{"nodes = 4", "nodes = 5", "16", "no links lead from node 0 to node 4"},
-        Fault{"nodes = 4", "nodes = 4\nrouters = 1", "16", "no links lead from node 0 to router 0"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 4\", \"node 0\"", "18", "\"node 4\" is none"},
-        Fault{"\"node 3\", \"node 0\"", "\"router 0\", \"node 0\"", "18", "0 routers"},
-        Fault{"\"node 3\", \"node 0\"", "\"node\", \"node 0\"", "18", "\"node\" is none"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 3x\", \"node 0\"", "18", "\"node 3x\" is none"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 3\"", "18", "a link is a pair"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 3\", 0", "18", "must be a non-empty string"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 3\", \"node 3\"", "18", "to itself"},
-        Fault{"\"node 3\", \"node 0\"", "\"node 1\", \"node 0\"", "18", "second link"},
-        Fault{"hub_accesses_per_s = 4e6", "hub_accesses_per_s = 0", "19", "must be a number from"}));
+    testing::Values(Fault{"name = \"one\"", "name = 1", "1", "name must be a non-empty string"},
+                    Fault{"name = \"one\"", "colour = 'red'\nname = 'a'", "1", "no key 'colour'"},
+                    Fault{"name = \"one\"", "name = 'a", "1", ""},
+                    Fault{"core_speed", "cor\xC3\xA9_speed", "6:4", "ASCII"},
+                    Fault{"sockets_per_node = 2\n", "", "2", "needs the key 'sockets_per_node'"},
+                    Fault{"sockets_per_node = 2", "sockets_per_node = 2.0", "3", "must be an integer"},
+                    Fault{"cores_per_socket = 4", "cores_per_socket = 0", "4", "from 1 to"},
+                    Fault{"cores_per_socket = 4", "cores_per_socket = 99999", "4", "from 1 to"},
+                    Fault{"clock_ghz = 2.0", "clock_ghz = nan", "5", "must be a number"},
+                    Fault{"clock_ghz = 2.0", "clock_ghz = inf", "5", "must be a number"},
+                    Fault{"clock_ghz = 2.0", "clock_mhz = 2000", "2", "needs the key 'clock_ghz'"},
+                    Fault{"core_speed = 0.5", "core_speed = -1", "6", "must be a number from"},
+                    Fault{"level = 3", "level = 1", "7", "from the fastest to the slowest"},
+                    Fault{"cycles = 40", "cycles = 3", "7", "from the fastest to the slowest"},
+                    Fault{"cores = 4,", "cores = 9,", "7", "from 1 to 8"},
+                    Fault{"gib_per_node = 1", "gib_per_node = 0", "9", "gib_per_node"},
+                    Fault{"local_cycles = 200", "local_cycles = 30", "10", "slower than any cache"},
+                    Fault{"cycles_per_hop = 1000\n", "", "8", "needs the key 'cycles_per_hop'"},
+                    Fault{"miss_share = 0.25", "miss_share = 1.5", "12", "from 0 to 1"},
+                    Fault{"wake_us = 5", "wake_us = \"5\"", "14", "wake_us must be a number"},
+                    Fault{"nodes = 4", "nodes = 400", "17", "from 1 to 256"},
+                    Fault{"nodes = 4", "nodes = 5", "16", "node 4 is not connected to node 0"},
+                    Fault{"nodes = 4", "nodes = 4\nrouters = 1", "16", "router 0 is not connected to node 0"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 4\", \"node 0\"", "18", "\"node 4\" is none"},
+                    Fault{"\"node 3\", \"node 0\"", "\"router 0\", \"node 0\"", "18", "0 routers"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node\", \"node 0\"", "18", "\"node\" is none"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 3x\", \"node 0\"", "18", "\"node 3x\" is none"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 3\"", "18", "a link is a pair"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 3\", 0", "18", "must be a non-empty string"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 3\", \"node 3\"", "18", "to itself"},
+                    Fault{"\"node 3\", \"node 0\"", "\"node 1\", \"node 0\"", "18", "second link"},
+                    Fault{"hub_accesses_per_s = 4e6", "hub_accesses_per_s = 0", "19",
+                          "must be a number from"}));
 
 TEST(MachineModel, RefusesMoreCoresThanAnyMachineHas) {
   const std::string text = replaced(replaced(kRing, "sockets_per_node = 2", "sockets_per_node = 64"),

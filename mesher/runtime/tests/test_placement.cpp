@@ -80,7 +80,7 @@ TEST_P(Order, ScatterKeepsNodesBalancedAndSiblingsLast) {
   }
 }
 
-TEST_P(Order, NoneSpreadsNodesAndBindsNobody) {
+TEST_P(Order, NoneSpreadsNodesAndBindsNoThread) {
   const auto bound = places_on(machine_, "scatter"), free = places_on(machine_, "none");
   ASSERT_EQ(bound.size(), free.size());
   for (std::size_t worker = 0; worker < free.size(); ++worker) {
@@ -133,7 +133,7 @@ TEST(Placement, RefusesMoreWorkersThanProcessors) {
 
 TEST(Placement, RefusesListedProcessorsThatAreNotThere) {
   EXPECT_THAT(fault_of<PlacementError>([] { place_workers(one_node(), PinPlan::parse("0,8"), 1, false); }),
-              AllOf(HasSubstr("processor 8"), HasSubstr("8 that can be used")));
+              AllOf(HasSubstr("processor 8"), HasSubstr("8 usable processors")));
 }
 
 TEST(Placement, ListedProcessorsAreSharedInTurn) {

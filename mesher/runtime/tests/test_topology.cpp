@@ -164,7 +164,7 @@ TEST(Topology, RefusesFilesThatDescribeNoMachine) {
   }
   EXPECT_THAT(fault_of<TopologyError>([] { Topology::from_file("/no/such/machine.xml"); }),
               HasSubstr("No such file"));
-  EXPECT_THAT(fault_of<TopologyError>([] { Topology::from_file("/"); }), HasSubstr("holds no text"));
+  EXPECT_THAT(fault_of<TopologyError>([] { Topology::from_file("/"); }), HasSubstr("the file is empty"));
 }
 
 TEST(Topology, RefusesDescriptionsThatMakeNoSense) {

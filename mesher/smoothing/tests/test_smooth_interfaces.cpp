@@ -20,15 +20,15 @@ class Definition {
         width_mm_(width_mm),
         side_mm_(std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2])) {}
 
-  std::vector<std::uint16_t> strengths() const {
+  std::vector<std::uint16_t> weights() const {
     const std::vector<double> distances = distances_mm();
     const double unit = std::max(1.1 * width_mm_, side_mm_ / 2) / 65535;
-    std::vector<std::uint16_t> strengths;
+    std::vector<std::uint16_t> weights;
     for (const double d : distances)
-      strengths.push_back(std::isnan(d) ? 0
-                                        : static_cast<std::uint16_t>(std::min(
-                                              std::round(std::max(d, side_mm_ / 20) / unit), 65535.0)));
-    return with_volumes_kept(with_volumes_kept(strengths, unit), unit);
+      weights.push_back(std::isnan(d) ? 0
+                                      : static_cast<std::uint16_t>(std::min(
+                                            std::round(std::max(d, side_mm_ / 20) / unit), 65535.0)));
+    return with_volumes_kept(with_volumes_kept(weights, unit), unit);
   }
 
  private:
@@ -112,7 +112,7 @@ class Definition {
   }
 
   // The mean outward shift of the interface of v's label over its faces nearby, in units of the weights.
-  double shift(const Voxel& v, const std::vector<std::uint16_t>& strengths) const {
+  double shift(const Voxel& v, const std::vector<std::uint16_t>& weights) const {
     const double shortest = *std::min_element(image_.spacing.begin(), image_.spacing.end());
     const std::array<int, 3> place{v.i, v.j, v.k};
     double areas = 0, leads = 0;
@@ -130,20 +130,19 @@ class Definition {
           if (image_.voxels[other] == image_.voxels[at]) continue;
           const double area = std::max(1.0, std::round(256 * shortest / image_.spacing[a]));
           areas += area;
-          leads += area * (strengths[at] - strengths[other]);
+          leads += area * (weights[at] - weights[other]);
         }
     });
     return areas > 0 ? leads / areas / 2 : 0;
   }
 
-  std::vector<std::uint16_t> with_volumes_kept(const std::vector<std::uint16_t>& strengths,
-                                               double unit) const {
-    std::vector<std::uint16_t> kept = strengths;
+  std::vector<std::uint16_t> with_volumes_kept(const std::vector<std::uint16_t>& weights, double unit) const {
+    std::vector<std::uint16_t> kept = weights;
     const double least = std::round(side_mm_ / 20 / unit);
     for_each([&](const Voxel& v, std::size_t at) {
-      if (strengths[at] > 0)
+      if (weights[at] > 0)
         kept[at] = static_cast<std::uint16_t>(
-            std::clamp(std::round(strengths[at] - shift(v, strengths)), least, 65535.0));
+            std::clamp(std::round(weights[at] - shift(v, weights)), least, 65535.0));
     });
     return kept;
   }
@@ -157,22 +156,22 @@ LabelImage labelled(LabelImage image) {
   return image;
 }
 
-std::vector<std::uint16_t> all_strengths(const LabelImage& image, double width_mm, int threads) {
+std::vector<std::uint16_t> all_weights(const LabelImage& image, double width_mm, int threads) {
   const auto smoothed = smooth_interfaces(image, width_mm, threads);
-  std::vector<std::uint16_t> strengths;
-  for (std::size_t v = 0; v < image.num_voxels(); ++v) strengths.push_back(smoothed.strengths->at(v));
-  return strengths;
+  std::vector<std::uint16_t> weights;
+  for (std::size_t v = 0; v < image.num_voxels(); ++v) weights.push_back(smoothed.weights->at(v));
+  return weights;
 }
 
 // Sums that are rounded differently may give weights that differ by 1.
-TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinition) {
+TEST(SmoothInterfaces, HaveTheWeightsOfTheDefinition) {
   Random random(31);
   for (const unsigned num_labels : {2u, 4u}) {
     for (const double coherence : {0.5, 0.9, 0.97}) {
       const LabelImage image =
           labelled(random_image(random, {19, 17, 5}, {1, 0.8, 1.9}, num_labels, coherence));
       for (const double width : {0.3, 0.9, 2.0}) {
-        const auto expected = Definition(image, width).strengths(), found = all_strengths(image, width, 1);
+        const auto expected = Definition(image, width).weights(), found = all_weights(image, width, 1);
         for (std::size_t v = 0; v < expected.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1);
       }
     }
@@ -180,11 +179,11 @@ TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinition) {
 }
 
 // Widths of whole numbers of voxels, which rounding makes slightly larger or smaller.
-TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinitionWhereWidthsAreWholeVoxels) {
+TEST(SmoothInterfaces, HaveTheWeightsOfTheDefinitionWhereWidthsAreWholeVoxels) {
   Random random(35);
   for (const auto& [spacing, width] : {std::pair{0.8, 1.6}, {0.4, 0.8}, {0.9, 2.7}, {0.7, 0.7}, {0.1, 0.3}}) {
     const LabelImage image = labelled(random_image(random, {15, 13, 6}, {spacing, spacing, spacing}, 3, 0.9));
-    const auto expected = Definition(image, width).strengths(), found = all_strengths(image, width, 1);
+    const auto expected = Definition(image, width).weights(), found = all_weights(image, width, 1);
     for (std::size_t v = 0; v < expected.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1) << spacing;
   }
 }
@@ -192,7 +191,7 @@ TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinitionWhereWidthsAreWholeVoxels)
 TEST(SmoothInterfaces, DoNotDependOnThreads) {
   Random random(32);
   const LabelImage image = labelled(random_image(random, {45, 38, 20}, {0.7, 0.7, 1}, 5, 0.95));
-  EXPECT_EQ(all_strengths(image, 1.3, 1), all_strengths(image, 1.3, 3));
+  EXPECT_EQ(all_weights(image, 1.3, 1), all_weights(image, 1.3, 3));
 }
 
 // Voxel centers, and the segments between neighbors of one label, keep their label. Components by faces
@@ -201,7 +200,7 @@ TEST(SmoothInterfaces, KeepVoxelsAndTheWaysBetweenThem) {
   Random random(33);
   for (const double width : {0.7, 2.5}) {
     const LabelImage image = labelled(random_image(random, {24, 21, 19}, {1, 1, 1}, 4, 0.9));
-    const Isosurface isosurface(image, 1, smooth_interfaces(image, width, 1).strengths);
+    const Isosurface isosurface(image, 1, smooth_interfaces(image, width, 1).weights);
     for (int n = 0; n < 20'000; ++n) {
       const Voxel v{static_cast<int>(random() % 23), static_cast<int>(random() % 20),
                     static_cast<int>(random() % 18)};
@@ -286,9 +285,9 @@ TEST(SmoothInterfaces, HalveErrorsOfNormalsAndKeepVolumes) {
     const double stairs_deg = normal_error_deg(shape, Isosurface(shape.image, 1));
     for (const double voxels : {1.0, 1.5, 2.0}) {
       const auto smoothed = smooth_interfaces(shape.image, voxels * shape.image.spacing[0], 1);
-      const Isosurface isosurface(shape.image, 1, smoothed.strengths);
+      const Isosurface isosurface(shape.image, 1, smoothed.weights);
       EXPECT_LE(normal_error_deg(shape, isosurface), (voxels > 1 ? 0.4 : 0.55) * stairs_deg) << voxels;
-      const double volume = volumes_mm3(shape.image, *smoothed.strengths, 1)[1];
+      const double volume = volumes_mm3(shape.image, *smoothed.weights, 1)[1];
       EXPECT_NEAR(volume / shape.volume_mm3, 1, 0.005) << voxels;
       EXPECT_TRUE(smoothed.labels_lost.empty());
     }
@@ -296,12 +295,12 @@ TEST(SmoothInterfaces, HalveErrorsOfNormalsAndKeepVolumes) {
 }
 
 double volume_mm3(const LabelImage& image, double width_mm) {
-  return volumes_mm3(image, *smooth_interfaces(image, width_mm, 1).strengths, 1)[1];
+  return volumes_mm3(image, *smooth_interfaces(image, width_mm, 1).weights, 1)[1];
 }
 
 double volume_of_stairs_mm3(const LabelImage& image) {
-  VoxelStrengths equal(image.size);
-  for (std::size_t v = 0; v < image.num_voxels(); ++v) equal.at(v) = VoxelStrengths::kMost;
+  VoxelWeights equal(image.size);
+  for (std::size_t v = 0; v < image.num_voxels(); ++v) equal.at(v) = VoxelWeights::kMost;
   return volumes_mm3(image, equal, 1)[1];
 }
 

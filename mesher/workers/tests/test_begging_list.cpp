@@ -43,7 +43,7 @@ TEST(BeggingList, TheNearestIsServedFirst) {
   EXPECT_EQ(served, (std::vector<WorkerId>{1, 5, 11})) << "of socket, node, machine";
 }
 
-TEST(BeggingList, AClosedOneNamesAllThatWereOnItAndTakesNobody) {
+TEST(BeggingList, AClosedOneNamesAllThatWereOnItAndTakesNoWorker) {
   for (const WorkerGroups& groups : {WorkerGroups{}, kNested}) {
     BeggingList list(12, groups);
     const std::set<WorkerId> beggars{2, 3, 4, 5, 6, 8, 11};

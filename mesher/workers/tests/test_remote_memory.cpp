@@ -48,7 +48,7 @@ TEST(RemoteMemory, ChargesEachAccessOnce) {
   EXPECT_DOUBLE_EQ(memory.delay(0, tally, 2).latency_s, kHop);
 }
 
-TEST(RemoteMemory, OfWhatNobodyWritesIsFetchedWholly) {
+TEST(RemoteMemory, DataThatNoWorkerWritesIsFetchedWholly) {
   const MachineModel machine = row_of_three(0.1, 0);
   RemoteMemory memory(machine, {0, 0});
   EXPECT_DOUBLE_EQ(memory.delay(0, tally_of(1, 8, AccessKind::kFirstRead), 0).latency_s, 8 * kHop);
@@ -67,7 +67,7 @@ TEST(RemoteMemory, StationsServeOneAccessAfterTheOther) {
 
 // Workers that each wait for their accesses get no more from a station than its capacity. With retries they
 // get less, and the less, the more of them wait.
-double accesses_a_second(double retries, WorkerId num_workers) {
+double accesses_per_second(double retries, WorkerId num_workers) {
   const MachineModel machine = row_of_three(1, kService, retries);
   RemoteMemory memory(machine, std::vector<NodeIndex>(num_workers, 0));
   std::vector<double> ready_at(num_workers, 0.0);
@@ -83,9 +83,9 @@ double accesses_a_second(double retries, WorkerId num_workers) {
 }
 
 TEST(RemoteMemory, BusyStationsBoundTheRate) {
-  EXPECT_NEAR(accesses_a_second(0, 16) * kService, 1, 0.05);
-  EXPECT_NEAR(accesses_a_second(0, 64) * kService, 1, 0.05);
-  const double few = accesses_a_second(0.1, 16), many = accesses_a_second(0.1, 64);
+  EXPECT_NEAR(accesses_per_second(0, 16) * kService, 1, 0.05);
+  EXPECT_NEAR(accesses_per_second(0, 64) * kService, 1, 0.05);
+  const double few = accesses_per_second(0.1, 16), many = accesses_per_second(0.1, 64);
   EXPECT_LT(few * kService, 0.9);
   EXPECT_LT(many, 0.5 * few);
 }

@@ -1,4 +1,4 @@
-#include "cli/reports/told_by_ranks.h"
+#include "cli/reports/ranks_record.h"
 
 #include <fmt/format.h>
 
@@ -55,7 +55,7 @@ double imbalance(const std::vector<PartOfRank>& parts) {
 
 Json update_of(const Update& update) {
   return {{"cubes", update.cubes},
-          {"vertices_told", update.vertices_told},
+          {"vertices_told", update.vertices_received},
           {"inserted", update.inserted},
           {"removed", update.removed}};
 }
@@ -147,12 +147,13 @@ std::string memory_text(const std::vector<Spent>& spent) {
       std::minmax_element(spent.begin(), spent.end(),
                           [](const Spent& a, const Spent& b) { return a.peak_rss_bytes < b.peak_rss_bytes; });
   const auto gib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kBytesPerGib; };
-  return fmt::format("memory of one {:.3f} to {:.3f} GiB", gib(least->peak_rss_bytes),
+  return fmt::format("memory per rank {:.3f} to {:.3f} GiB", gib(least->peak_rss_bytes),
                      gib(most->peak_rss_bytes));
 }
 
 std::string virtual_time_text(const std::vector<Spent>& spent) {
-  if (!has_virtual_time(spent[0])) return "clocks do not see their other threads";
+  if (!has_virtual_time(spent[0]))
+    return "no virtual time: the clock of a rank does not include its other threads";
   double computing_s = 0, waiting_s = 0;
   std::uint64_t bytes = 0;
   for (const Spent& one : spent) {
@@ -161,7 +162,7 @@ std::string virtual_time_text(const std::vector<Spent>& spent) {
     bytes += one.report.bytes_sent;
   }
   return fmt::format(
-      "virtual time at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
+      "virtual time per rank at most {:.2f} s computing, {:.2f} s waiting, {:.4f} s network; {} bytes sent",
       computing_s, waiting_s, spent[0].report.network_s, bytes);
 }
 
@@ -172,16 +173,16 @@ std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spen
                                        : fmt::format("on {} machine{}", machines.num_machines(),
                                                      machines.num_machines() > 1 ? "s" : "");
   std::string text = fmt::format(
-      "ranks      {} {}, by {}; the most cells of one are {:.3g} times the mean;\n           {}\n",
+      "ranks      {} {}, by {}; the rank with most cells has {:.3g} times the mean;\n           {}\n",
       parts.size(), where, to_string(algorithm), imbalance(parts),
       is_virtual ? virtual_time_text(spent) : memory_text(spent));
   if (parts[0].rounds.empty()) return text;
-  text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
-                      "deferred", "vertices told", "seconds: exchange", "refine");
+  text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>17} {:>17} {:>9}\n", "round", "entries", "insertions",
+                      "deferred", "vertices received", "seconds: exchange", "refine");
   for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
     const RoundReport round = on_all(parts, i);
     text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17.2f} {:>9.2f}\n", i, round.entries,
-                        round.insertions, round.deferred, round.update.vertices_told, round.update_s,
+                        round.insertions, round.deferred, round.update.vertices_received, round.update_s,
                         round.refine_s);
   }
   return text;
@@ -197,8 +198,8 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
   append(message, numbers_of(result.piece.mesh).facet_pairs);
   std::vector<Spent> spent;
   std::vector<FacetCount> pairs;
-  for (const Bytes& told : ranks.all_gather(std::move(message))) {
-    MessageReader reader(told);
+  for (const Bytes& received : ranks.all_gather(std::move(message))) {
+    MessageReader reader(received);
     spent.push_back(reader.read<Spent>().at(0));
     run.peak_rss_bytes = std::max(run.peak_rss_bytes, spent.back().peak_rss_bytes);
     const auto more = reader.read<FacetCount>();

@@ -20,32 +20,32 @@ namespace podm {
 
 /// Voxel weights in (0,1], set for voxels beside one of another label and unset elsewhere. They take two
 /// bytes per voxel.
-class VoxelStrengths {
+class VoxelWeights {
  public:
-  static constexpr std::uint16_t kMost = 0xffff, kUntold = 0;
+  static constexpr std::uint16_t kMost = 0xffff, kUnset = 0;
 
   /// All weights are unset at first.
-  explicit VoxelStrengths(const std::array<int, 3>& size)
+  explicit VoxelWeights(const std::array<int, 3>& size)
       : size_(size),
         row_(static_cast<std::size_t>(size[0])),
         slice_(row_ * static_cast<std::size_t>(size[1])),
-        strengths_(slice_ * static_cast<std::size_t>(size[2])) {}
+        weights_(slice_ * static_cast<std::size_t>(size[2])) {}
 
   /// In units of 1 / kMost.
-  std::uint16_t& at(std::size_t voxel) { return strengths_[voxel]; }
-  std::uint16_t at(std::size_t voxel) const { return strengths_[voxel]; }
+  std::uint16_t& at(std::size_t voxel) { return weights_[voxel]; }
+  std::uint16_t at(std::size_t voxel) const { return weights_[voxel]; }
 
   /// A voxel outside the grid has the weight of the nearest voxel inside. A cut through an object therefore
   /// stays flat.
-  double strength(const Voxel& v) const { return share(strengths_[index(clamped(v))]); }
-  CornerStrengths block(const Voxel& b) const {
+  double weight(const Voxel& v) const { return share(weights_[index(clamped(v))]); }
+  CornerWeights block(const Voxel& b) const {
     CornerValues values;
     for (std::size_t row = 0; row < 4; ++row) {
       const Voxel v{b.i, b.j + static_cast<int>(row & 1), b.k + static_cast<int>(row >> 1)};
       const Voxel low = clamped(v), high = clamped({v.i + 1, v.j, v.k});
       const std::size_t first = index(low);
-      values[2 * row] = share(strengths_[first]);
-      values[2 * row + 1] = share(strengths_[first + static_cast<std::size_t>(high.i - low.i)]);
+      values[2 * row] = share(weights_[first]);
+      values[2 * row + 1] = share(weights_[first + static_cast<std::size_t>(high.i - low.i)]);
     }
     return {values};
   }
@@ -63,7 +63,7 @@ class VoxelStrengths {
 
   std::array<int, 3> size_;
   std::size_t row_, slice_;  // voxels
-  HugeArray<std::uint16_t> strengths_;
+  HugeArray<std::uint16_t> weights_;
 };
 
 }  // namespace podm

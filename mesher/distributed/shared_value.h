@@ -12,7 +12,7 @@ namespace podm {
 /// The first rank that requests the value makes it. The clocks of ranks that come later advance as if they
 /// had made it.
 template <class T>
-class MadeOnce {
+class SharedValue {
  public:
   /// Returns the value. Not collective. An exception of make() goes to the rank that called it, and the next
   /// rank tries again.

@@ -1,4 +1,4 @@
-#include "optimize/smoothing.h"
+#include "optimize/vertex_smoothing.h"
 
 #include <cmath>
 #include <limits>
@@ -26,14 +26,14 @@ Vector nearest_mixture(const std::vector<Vector>& vectors) {
 
 }  // namespace
 
-double Smoothing::worst(const Point& at, double floor) const {
+double VertexSmoothing::worst(const Point& at, double floor) const {
   double worst = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < triangles_.size() && worst > floor; ++i) worst = std::min(worst, cell(i, at));
   return worst;
 }
 
 // Returns the direction in which all nearly worst cells improve; its length is the rate. 0: there is none.
-Vector Smoothing::ascent(const Point& at, double scale) {
+Vector VertexSmoothing::ascent(const Point& at, double scale) {
   constexpr double kNearlyWorst = 1.3;
   double worst = std::numeric_limits<double>::infinity();
   values_.clear();
@@ -54,8 +54,8 @@ Vector Smoothing::ascent(const Point& at, double scale) {
   return nearest_mixture(gradients_);
 }
 
-bool Smoothing::move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets,
-                     const LabelBound& bound, double floor, Point& at) {
+bool VertexSmoothing::move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets,
+                           const LabelBound& bound, double floor, Point& at) {
   bound_ = bound;
   triangles_.clear();
   double shortest2 = std::numeric_limits<double>::infinity();

@@ -16,10 +16,10 @@ struct CellPoints {
   DihedralExtremes dihedral() const { return dihedral_extremes(a, b, c, d); }
 };
 
-class CellQuality {
+class OptimizationQuality {
  public:
   /// A cell at these bounds has a quality of 1.
-  explicit CellQuality(const DihedralBounds& bounds) : bounds_(bounds) {}
+  explicit OptimizationQuality(const DihedralBounds& bounds) : bounds_(bounds) {}
   const DihedralBounds& bounds() const { return bounds_; }
 
   /// Returns DihedralBounds::quality.

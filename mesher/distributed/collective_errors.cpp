@@ -1,4 +1,4 @@
-#include "distributed/together.h"
+#include "distributed/collective_errors.h"
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ std::vector<std::string> read_texts(const Bytes& message, std::size_t count) {
 
 }  // namespace
 
-void do_together(const std::function<void()>& action, Communication& ranks) {
+void do_collectively(const std::function<void()>& action, Communication& ranks) {
   std::string fault;
   try {
     action();
@@ -33,7 +33,8 @@ void do_together(const std::function<void()>& action, Communication& ranks) {
     fault = error.what();
   }
   std::vector<std::string> faults;
-  for (const Bytes& told : ranks.all_gather(bytes_of({fault}))) faults.push_back(read_texts(told, 1)[0]);
+  for (const Bytes& message : ranks.all_gather(bytes_of({fault})))
+    faults.push_back(read_texts(message, 1)[0]);
   const auto first =
       std::find_if(faults.begin(), faults.end(), [](const auto& text) { return !text.empty(); });
   if (first == faults.end()) return;
@@ -47,11 +48,11 @@ void expect_agreement(const std::vector<Fact>& facts, Communication& ranks) {
   const std::vector<Bytes> all = ranks.all_gather(bytes_of(own));
   const std::vector<std::string> of_first = read_texts(all[0], own.size());
   for (std::size_t rank = 1; rank < all.size(); ++rank) {
-    const std::vector<std::string> told = read_texts(all[rank], own.size());
-    for (std::size_t i = 0; i < told.size(); ++i)
-      if (told[i] != of_first[i])
+    const std::vector<std::string> texts = read_texts(all[rank], own.size());
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      if (texts[i] != of_first[i])
         throw RefusedByAll(fmt::format("rank {} of {} does not have the {} of rank 0: {}, not {}", rank,
-                                       ranks.size(), facts[i].first, told[i], of_first[i]));
+                                       ranks.size(), facts[i].first, texts[i], of_first[i]));
   }
 }
 

@@ -22,7 +22,7 @@ struct Names<Unmoved> {
                                    std::pair{Unmoved::kSurface, "surface"}};
 };
 
-struct Perturbed {
+struct PerturbationReport {
   double min_dihedral_deg = 0, max_dihedral_deg = 0;  ///< the bounds
   /// Numbers of cells with an angle out of bounds.
   struct Cells {

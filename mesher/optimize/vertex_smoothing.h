@@ -1,7 +1,7 @@
-// Smoothing by non-smooth optimisation: moves a vertex to where the worst of the cells around it is best. The
-// worst cells change on the way, so the worst quality has no gradient. The direction of ascent is the point
-// nearest to the origin among the convex combinations of the gradients of all nearly worst cells (Freitag,
-// Jones, Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
+// Smoothing by non-smooth optimisation: moves a vertex to where the worst of the cells around it is
+// best. The worst cells change on the way, so the worst quality has no gradient. The direction of ascent is
+// the point nearest to the origin among the convex combinations of the gradients of all nearly worst cells
+// (Freitag, Jones, Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
 #pragma once
 
 #include <span>
@@ -11,9 +11,9 @@
 
 namespace podm {
 
-class Smoothing {
+class VertexSmoothing {
  public:
-  explicit Smoothing(const CellQuality& quality) : quality_(quality) {}
+  explicit VertexSmoothing(const OptimizationQuality& quality) : quality_(quality) {}
 
   /// The vertex at `at` has these facets opposite it, each counter-clockwise seen from it. Moves it to where
   /// the worst cell is better than `floor`, or returns false.
@@ -33,7 +33,7 @@ class Smoothing {
   struct Triangle {
     Point a, b, c;
   };
-  const CellQuality& quality_;
+  const OptimizationQuality& quality_;
   LabelBound bound_;
   std::vector<Triangle> triangles_;
   std::vector<double> values_;

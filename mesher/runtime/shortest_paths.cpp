@@ -1,4 +1,4 @@
-#include "runtime/shortest_ways.h"
+#include "runtime/shortest_paths.h"
 
 #include <algorithm>
 
@@ -6,21 +6,21 @@ namespace podm {
 
 namespace {
 
-// Builds the way backwards from `to`. `links` counts links from the start, `load` the ways through each
+// Builds the path backwards from `to`. `links` counts links from the start, `load` the paths through each
 // vertex.
-std::vector<int> way_to(const Neighbours& neighbours, const std::vector<int>& links, int to,
-                        std::vector<int>& load) {
-  std::vector<int> way = {to};
-  while (links[way.back()] > 0) {
+std::vector<int> path_to(const Neighbours& neighbours, const std::vector<int>& links, int to,
+                         std::vector<int>& load) {
+  std::vector<int> path = {to};
+  while (links[path.back()] > 0) {
     const auto cost = [&](int vertex) { return std::pair(links[vertex], load[vertex]); };
-    const std::vector<int>& before = neighbours[way.back()];
-    way.push_back(
+    const std::vector<int>& before = neighbours[path.back()];
+    path.push_back(
         *std::min_element(before.begin(), before.end(), [&](int a, int b) { return cost(a) < cost(b); }));
-    ++load[way.back()];
+    ++load[path.back()];
   }
-  --load[way.back()];  // the start is on all of its ways
-  std::reverse(way.begin(), way.end());
-  return way;
+  --load[path.back()];  // the start is on all of its paths
+  std::reverse(path.begin(), path.end());
+  return path;
 }
 
 }  // namespace
@@ -39,15 +39,15 @@ std::vector<int> links_from(const Neighbours& neighbours, int start) {
   return links;
 }
 
-std::vector<std::vector<int>> shortest_ways(const Neighbours& neighbours, int num_ends) {
-  std::vector<std::vector<int>> ways;
+std::vector<std::vector<int>> shortest_paths(const Neighbours& neighbours, int num_ends) {
+  std::vector<std::vector<int>> paths;
   std::vector<int> load(neighbours.size());
   for (int from = 0; from < num_ends; ++from) {
     const std::vector<int> links = links_from(neighbours, from);
     for (int to = 0; to < num_ends; ++to)
-      ways.push_back(from == to ? std::vector<int>() : way_to(neighbours, links, to, load));
+      paths.push_back(from == to ? std::vector<int>() : path_to(neighbours, links, to, load));
   }
-  return ways;
+  return paths;
 }
 
 }  // namespace podm

@@ -17,6 +17,6 @@ using Work = std::function<void(const ProgressCallback&, const std::stop_token&)
 /// to `callback`, unless it is None, several times per second. An exception of a signal handler or of the
 /// callback requests a stop, and is returned when the work has ended. Without such an exception, throws what
 /// the work throws, or returns None.
-pybind11::object run_beside_python(const Work& work, const pybind11::object& callback);
+pybind11::object run_without_gil(const Work& work, const pybind11::object& callback);
 
 }  // namespace podm::python

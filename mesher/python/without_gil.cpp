@@ -1,4 +1,4 @@
-#include "python/beside_python.h"
+#include "python/without_gil.h"
 
 #include <chrono>
 #include <future>
@@ -50,7 +50,7 @@ py::object ask_python(LatestProgress& latest, const py::object& callback) {
 
 }  // namespace
 
-py::object run_beside_python(const Work& work, const py::object& callback) {
+py::object run_without_gil(const Work& work, const py::object& callback) {
   LatestProgress latest;
   std::stop_source stop;
   std::future<void> done = std::async(std::launch::async, [&] {

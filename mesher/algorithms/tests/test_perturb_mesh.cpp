@@ -7,24 +7,24 @@
 #include "algorithms/podm.h"
 #include "delaunay/tests/cells_by_points.h"
 #include "image/foreground.h"
-#include "refine/cell_quality.h"
+#include "refine/dihedral_quality.h"
 #include "tests/images.h"
 
 namespace podm::test {
 namespace {
 
-class Perturb : public testing::Test {
+class PerturbMesh : public testing::Test {
  protected:
   Refinement refine(std::optional<DihedralBounds> bounds, int num_workers = 1) {
     problem_.dihedral_bounds = bounds;
     return podm(problem_, {.coordination = {.num_workers = num_workers}}, stop_);
   }
   // Counts the cells inside with angles out of bounds, by an independent pass over all cells.
-  Perturbed::Cells poor(const Mesh& mesh, const DihedralBounds& bounds) const {
-    Perturbed::Cells cells;
+  PerturbationReport::Cells poor(const Mesh& mesh, const DihedralBounds& bounds) const {
+    PerturbationReport::Cells cells;
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {
       if (!mesh.cell(c).is_alive() || isosurface_.label_at(mesh.cell(c).center) == kBackground) continue;
-      if (cell_quality(mesh, c, bounds) >= 1) continue;
+      if (dihedral_quality(mesh, c, bounds) >= 1) continue;
       const auto& v = mesh.cell(c).vertices;
       const bool has_free = std::any_of(
           v.begin(), v.end(), [&](VertexId w) { return mesh.vertex(w).kind == VertexKind::kCircumcenter; });
@@ -32,9 +32,9 @@ class Perturb : public testing::Test {
     }
     return cells;
   }
-  static std::uint64_t told_unmoved(const Perturbed& told) {
-    std::uint64_t sum = told.not_reached;
-    for (const std::uint64_t cells : told.unmoved) sum += cells;
+  static std::uint64_t num_unmoved(const PerturbationReport& report) {
+    std::uint64_t sum = report.not_reached;
+    for (const std::uint64_t cells : report.unmoved) sum += cells;
     return sum;
   }
 
@@ -49,53 +49,53 @@ class Perturb : public testing::Test {
   StopControl stop_{{}, {}, [](std::uint64_t) {}};
 };
 
-TEST_F(Perturb, LeavesFewPoorCellsThatHaveAFreeVertex) {
+TEST_F(PerturbMesh, LeavesFewPoorCellsThatHaveAFreeVertex) {
   const Refinement without = refine(std::nullopt), with = refine(bounds_);
-  ASSERT_TRUE(with.perturbed);
-  const Perturbed::Cells before = poor(*without.mesh, bounds_);
-  EXPECT_EQ(with.perturbed->before.with_free_vertex, before.with_free_vertex);
-  EXPECT_EQ(with.perturbed->before.without, before.without);
+  ASSERT_TRUE(with.perturbation);
+  const PerturbationReport::Cells before = poor(*without.mesh, bounds_);
+  EXPECT_EQ(with.perturbation->before.with_free_vertex, before.with_free_vertex);
+  EXPECT_EQ(with.perturbation->before.without, before.without);
   ASSERT_GT(before.with_free_vertex, 200u);
-  EXPECT_LT(with.perturbed->after.with_free_vertex, before.with_free_vertex / 100);
+  EXPECT_LT(with.perturbation->after.with_free_vertex, before.with_free_vertex / 100);
   EXPECT_GT(with.counters.moves, 0u);
   EXPECT_EQ(with.counters.num_insertions(), without.counters.num_insertions()) << "R1 to R5 come first";
 }
 
-TEST_F(Perturb, TellsWhatIsLeftAndWhy) {
+TEST_F(PerturbMesh, ReportsWhatIsLeftAndWhy) {
   for (const int num_workers : {1, 4}) {
     const Refinement refinement = refine(hard_, num_workers);
-    const Perturbed::Cells left = poor(*refinement.mesh, hard_);
-    ASSERT_TRUE(refinement.perturbed);
-    EXPECT_EQ(refinement.perturbed->after.with_free_vertex, left.with_free_vertex);
-    EXPECT_EQ(refinement.perturbed->after.without, left.without);
+    const PerturbationReport::Cells left = poor(*refinement.mesh, hard_);
+    ASSERT_TRUE(refinement.perturbation);
+    EXPECT_EQ(refinement.perturbation->after.with_free_vertex, left.with_free_vertex);
+    EXPECT_EQ(refinement.perturbation->after.without, left.without);
     EXPECT_GT(left.number(), 0u);
-    EXPECT_EQ(told_unmoved(*refinement.perturbed), left.number());
-    EXPECT_EQ(refinement.perturbed->not_reached, 0u);
+    EXPECT_EQ(num_unmoved(*refinement.perturbation), left.number());
+    EXPECT_EQ(refinement.perturbation->not_reached, 0u);
   }
 }
 
-TEST_F(Perturb, IsTheSameEachTimeOnOneThread) {
+TEST_F(PerturbMesh, IsTheSameEachTimeOnOneThread) {
   EXPECT_EQ(cells_by_points(*refine(bounds_).mesh), cells_by_points(*refine(bounds_).mesh));
 }
 
-TEST_F(Perturb, IsNoPhaseOfARunThatDoesNotAskForIt) {
+TEST_F(PerturbMesh, IsNoPhaseOfARunThatDoesNotAskForIt) {
   const Refinement refinement = refine(std::nullopt);
   EXPECT_FALSE(refinement.phases_s.contains("perturb"));
-  EXPECT_FALSE(refinement.perturbed);
+  EXPECT_FALSE(refinement.perturbation);
   EXPECT_EQ(refinement.counters.moves + refinement.counters.points_tried, 0u);
 }
 
-TEST_F(Perturb, MayEndBetweenMoves) {
+TEST_F(PerturbMesh, MayEndBetweenMoves) {
   problem_.observe_perturbation = [&](double, std::uint64_t) { stop_.end(StopReason::kCancelled); };
   const Refinement refinement = refine(hard_, 2);
   EXPECT_EQ(refinement.stop_reason, StopReason::kCancelled);
   std::string fault;
   EXPECT_TRUE(is_valid(*refinement.mesh, &fault)) << fault;
-  ASSERT_TRUE(refinement.perturbed);
-  const Perturbed::Cells left = poor(*refinement.mesh, hard_);
-  EXPECT_GT(refinement.perturbed->not_reached, 0u);
-  EXPECT_EQ(told_unmoved(*refinement.perturbed), left.number());
-  EXPECT_EQ(refinement.perturbed->after.number(), left.number());
+  ASSERT_TRUE(refinement.perturbation);
+  const PerturbationReport::Cells left = poor(*refinement.mesh, hard_);
+  EXPECT_GT(refinement.perturbation->not_reached, 0u);
+  EXPECT_EQ(num_unmoved(*refinement.perturbation), left.number());
+  EXPECT_EQ(refinement.perturbation->after.number(), left.number());
 }
 
 }  // namespace

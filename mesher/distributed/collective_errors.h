@@ -19,7 +19,7 @@ class RefusedByAll : public InputError {
 /// Collective. Calls action(), which must not be collective. Then throws RefusedByAll on all ranks if
 /// action() threw InputError on any rank. The text is that of the first such rank, after the rank's number
 /// unless all ranks have the same text. Other exceptions pass through.
-void do_together(const std::function<void()>& action, Communication& ranks);
+void do_collectively(const std::function<void()>& action, Communication& ranks);
 
 /// A name and a text.
 using Fact = std::pair<std::string, std::string>;

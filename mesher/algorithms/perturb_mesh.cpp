@@ -1,4 +1,4 @@
-#include "algorithms/perturb.h"
+#include "algorithms/perturb_mesh.h"
 
 #include <new>
 #include <numeric>
@@ -9,7 +9,7 @@ namespace podm {
 
 namespace {
 
-constexpr const char* kPerturb = "perturb";
+constexpr const char* kPhase = "perturb";
 
 // The few cells that the first round leaves justify more points, and more distant ones.
 constexpr std::array kRounds{MoveEffort{12, 0.25}, MoveEffort{36, 0.4}, MoveEffort{36, 0.4},
@@ -22,34 +22,34 @@ class Phase {
       : construction_(construction),
         mesh_(construction.mesh()),
         time_(time),
-        workers_(construction.make_workers<Locks>(parameters, construction.num_workers(), kPerturb)) {
+        workers_(construction.make_workers<Locks>(parameters, construction.num_workers(), kPhase)) {
     const std::uint64_t seed = construction.team().coordination.seed;
     for (const auto& worker : workers_)
-      worker->perturb(*construction.problem().dihedral_bounds, seed + worker->id());
+      worker->begin_perturbation(*construction.problem().dihedral_bounds, seed + worker->id());
   }
   ~Phase() {
     construction_.stop().observe_by([](std::uint64_t) {});  // the workers that it reads are destroyed
   }
 
-  Perturbed operator()() {
+  PerturbationReport operator()() {
     const DihedralBounds& bounds = *construction_.problem().dihedral_bounds;
-    Perturbed told;
-    told.min_dihedral_deg = bounds.least_deg();
-    told.max_dihedral_deg = bounds.largest_deg();
-    told.before = list_poor(true);
-    observe(told.before.number());
+    PerturbationReport report;
+    report.min_dihedral_deg = bounds.least_deg();
+    report.max_dihedral_deg = bounds.largest_deg();
+    report.before = list_poor(true);
+    observe(report.before.number());
     for (const MoveEffort& effort : kRounds) {
       if (!try_listed(effort)) break;
       if (&effort != &kRounds.back()) list_kept();
     }
-    tell_kept(told);
+    count_unmoved(report);
     if (time_.is_over()) {  // the cells in `unmoved` have been tried
-      told.after = list_poor(false);
-      told.not_reached =
-          told.after.number() - std::accumulate(told.unmoved.begin(), told.unmoved.end(), 0ull);
+      report.after = list_poor(false);
+      report.not_reached =
+          report.after.number() - std::accumulate(report.unmoved.begin(), report.unmoved.end(), 0ull);
     }
     construction_.account(workers_, time_);
-    return told;
+    return report;
   }
 
  private:
@@ -58,8 +58,8 @@ class Phase {
 
   // Counts the poor cells, and lists them if `gives`. Each worker has a part of the store, which does not
   // change meanwhile.
-  Perturbed::Cells list_poor(bool gives) {
-    std::vector<Perturbed::Cells> found(workers_.size());
+  PerturbationReport::Cells list_poor(bool gives) {
+    std::vector<PerturbationReport::Cells> found(workers_.size());
     const auto list = [&](WorkerId self) {
       Worker<Locks>& worker = *workers_[self];
       const std::size_t bound = mesh_.cell_bound();
@@ -68,7 +68,7 @@ class Phase {
       for (CellId c = begin; c < end; ++c) {
         if (c + kLookahead < end) mesh_.prefetch_vertices(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || !worker.perturbation().is_poor(c)) continue;
-        Perturbed::Cells& cells = found[self];
+        PerturbationReport::Cells& cells = found[self];
         ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);
         if (gives) worker.give(c);
       }
@@ -79,8 +79,8 @@ class Phase {
     } else {
       for (WorkerId self = 0; self < workers_.size(); ++self) list(self);
     }
-    Perturbed::Cells sum;
-    for (const Perturbed::Cells& cells : found) {
+    PerturbationReport::Cells sum;
+    for (const PerturbationReport::Cells& cells : found) {
       sum.with_free_vertex += cells.with_free_vertex;
       sum.without += cells.without;
     }
@@ -111,13 +111,13 @@ class Phase {
 
   // Reports the cells that the last round kept. A cell that became poor was listed, and one that was tried
   // without success was kept.
-  void tell_kept(Perturbed& told) {
+  void count_unmoved(PerturbationReport& report) {
     for (const auto& worker : workers_) {
       for (const auto& [entry, why] : worker->take_kept()) {
         if (mesh_.stamp(entry.cell) != entry.stamp) continue;
-        ++told.unmoved[static_cast<std::size_t>(why)];
+        ++report.unmoved[static_cast<std::size_t>(why)];
         const bool has_free = worker->perturbation().has_free_vertex(entry.cell);
-        ++(has_free ? told.after.with_free_vertex : told.after.without);
+        ++(has_free ? report.after.with_free_vertex : report.after.without);
       }
     }
   }
@@ -139,9 +139,9 @@ class Phase {
 
 }  // namespace
 
-void perturb(Construction& construction, const Parameters& parameters) {
+void perturb_mesh(Construction& construction, const Parameters& parameters) {
   if (!construction.problem().dihedral_bounds || construction.stop().is_over()) return;
-  construction.timed(kPerturb, [&] {
+  construction.timed(kPhase, [&] {
     // Memory may run out for the lists between rounds, too, not only for workers.
     const auto run = [&](auto& time) {
       using Time = std::remove_reference_t<decltype(time)>;
@@ -152,12 +152,12 @@ void perturb(Construction& construction, const Parameters& parameters) {
       }
     };
     try {
-      construction.in_time(kPerturb, construction.num_workers(), run, kPerturb);
+      construction.in_time(kPhase, construction.num_workers(), run, kPhase);
     } catch (const std::bad_alloc&) {
       construction.stop().end(StopReason::kMemoryLimit);
     }
   });
-  construction.sample_pages(kPerturb);
+  construction.sample_pages(kPhase);
 }
 
 }  // namespace podm
