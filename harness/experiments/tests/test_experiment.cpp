@@ -318,7 +318,7 @@ TEST_F(ExperimentTest, OtherMeshersTakeRadiusDeltaAndThreadsAlone) {
   const std::string peer = kHead + kTrial + "mesher = [\"podm\", \"other\"]\nradius_mm = 2\n";
   EXPECT_EQ(read(peer + "delta_mm = 1\nthreads = 2\n").trials.size(), 2u);
   const std::string what = fault(peer + "pin = true\n");
-  EXPECT_NE(what.find("pin is an option of podm alone"), std::string::npos) << what;
+  EXPECT_NE(what.find("pin is an option of podm only"), std::string::npos) << what;
 }
 
 // The experiments in experiments/ are complete, and each has trials in the tiers kick-tires and default.
