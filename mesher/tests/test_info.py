@@ -65,7 +65,7 @@ class Info(PodmTestCase):
         small_images.write_nifti(path, bytes([3, 4] * 864))
         self.assertNotIn("no background", run_podm("info", path, "--background", "3").stdout)
 
-    def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
+    def test_a_meta_image_whose_header_states_an_old_stream_size_is_read_with_a_warning(self):
         path = self.folder / "stale.mha"
         voxels = small_images.ball_voxels(12)
         small_images.write_metaimage(path, voxels, compressed_size=7)

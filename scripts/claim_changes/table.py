@@ -40,7 +40,7 @@ def _fate(history, life):
         what = (f"superseded by `{successor.name}`" if successor else
                 _withdrawn_in_words(withdrawal) if withdrawal else "**gone**")
         reason = successor.reason if successor else withdrawal.reason if withdrawal else ""
-        return _line(f"`{life.id}`", what, _said(life.last()), reason)
+        return _line(f"`{life.id}`", what, _statement(life.last()), reason)
     before = life.changes[0].after
     parts = []
     if before.experiment != claim.experiment:
@@ -49,14 +49,14 @@ def _fate(history, life):
         before = pair[0]
         is_restored = not any(definitions.loosened(one, claim) for one in life.definitions())
         parts.append(f"loosened to {definitions.bound_in_words(pair[1])}" + (", restored" if is_restored else ""))
-    return _line(f"`{life.id}`", "; ".join(parts), _said(before), claim.reason) if parts else None
+    return _line(f"`{life.id}`", "; ".join(parts), _statement(before), claim.reason) if parts else None
 
 
 def _withdrawn_in_words(entry):
     return "withdrawn" + (f", superseded by `{entry.superseded_by}`" if entry.superseded_by else "")
 
 
-def _said(claim):
+def _statement(claim):
     bound = definitions.bound_in_words(claim)
     return claim.definition["statement"] + (f" ({claim.experiment}; {bound})" if bound else f" ({claim.experiment})")
 
