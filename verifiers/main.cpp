@@ -297,7 +297,7 @@ int main_or_throw(int argc, char** argv) {
   return verify(command);
 }
 
-int complain(const std::string& fault, int exit_code) {
+int report_error(const std::string& fault, int exit_code) {
   fmt::print(stderr, "podm-verify: {}\n", fault);
   return exit_code;
 }
@@ -313,10 +313,10 @@ int main(int argc, char** argv) {
   try {
     return main_or_throw(argc, argv);
   } catch (const InputError& error) {
-    return complain(error.what(), kBadInput);
+    return report_error(error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory", kInternal);
+    return report_error("out of memory", kInternal);
   } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), kInternal);
+    return report_error(std::string("internal error: ") + error.what(), kInternal);
   }
 }

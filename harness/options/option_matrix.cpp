@@ -54,7 +54,7 @@ struct MesherOption {
 constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                      kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// What the harness does with one process of podm, and not with ranks.
+// Options that the harness supports for one process of podm, and not for ranks.
 constexpr std::array kSingleProcessOptions{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.

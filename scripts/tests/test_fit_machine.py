@@ -78,7 +78,7 @@ class Rows(unittest.TestCase):
         older = rows_of()
         for one in older:
             one["virtual"].pop("worker_s")
-        self.assertIn("do not tell virtual.worker_s.compute", self.refused(older))
+        self.assertIn("do not record virtual.worker_s.compute", self.refused(older))
 
     def test_an_older_row_among_newer_ones_does_not_count(self):
         rows = rows_of()

@@ -170,8 +170,8 @@ class ProgramTest(unittest.TestCase):
             self.assertEqual(report["options"]["smooth_mm"], 1.25 if options else None)
             self.assertEqual(report["mesh"]["smoothing_mm"], 0.75 if comments else None)
             self.assertEqual("mesh_to_voxels" in report["claims"]["fidelity"]["details"], width is not None)
-            told = f"image smoothed by {width} mm, as " + ("--smooth states" if options else "the mesh file states")
-            self.assertEqual(told in process.stdout, width is not None, process.stdout)
+            line = f"image smoothed by {width} mm, as " + ("--smooth states" if options else "the mesh file states")
+            self.assertEqual(line in process.stdout, width is not None, process.stdout)
         for width, fault in (("8.5", "image.inr: cannot be smoothed by 8.5 mm"), ("8", "less than 8 mm"),
                              ("0", "--smooth"), ("nan", "--smooth"), ("-1", "--smooth")):
             process = self.verify(*claims, "--smooth", width)
