@@ -144,8 +144,9 @@ void declare_claims(CLI::App& app, Command& command) {
           ->option_text("FILE");
   app.add_option(
          "--size-factor", options.size_factor,
-         fmt::format("factor of these bounds; podm mesh records it as size_image_factor [default: {}]",
-                     options.size_factor))
+         fmt::format(
+             "factor of these bounds; podm mesh records that of a target as size_image_factor [default: {}]",
+             options.size_factor))
       ->option_text("X")
       ->check(positive())
       ->needs(size_image);
@@ -205,7 +206,7 @@ void declare_report(CLI::App& app, Command& command) {
   app.add_option("--threads", options.threads, "verdicts do not depend on it [default: all cores]")
       ->option_text("N")
       ->check(CLI::Range(1, 4096));
-  app.add_flag("--quiet", command.quiet, "print no report");
+  app.add_flag("--quiet", command.quiet, "print no text report");
   app.set_version_flag("--version", std::string("podm-verify " PODM_VERSION "\n") + build_info());
 }
 

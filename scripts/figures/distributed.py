@@ -114,7 +114,7 @@ def readable(table):
         shown[title] = ["" if pandas.isna(value) else f"{100 * value:.{digits}f} %" for value in table[name]]
     shown["imbalance"] = [f"{value:.3f}" for value in table["imbalance"]]
     shown["bytes per cell of the largest rank"] = ["" if pandas.isna(value) else f"{value:.0f}"
-                                                 for value in table["rank_bytes_per_cell"]]
+                                                   for value in table["rank_bytes_per_cell"]]
     for part, words in PARTS.items():
         shown[f"{words}, us per cell"] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[part]]
     return shown

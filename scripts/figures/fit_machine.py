@@ -235,9 +235,9 @@ def main(arguments=None):
           file=sys.stderr)
     constants, mean = fit(runs, machine)
     result = {"schema": "podm-machine-fit/1", "machine": machine.get("name", asked.machine.stem),
-            "records": [str(path) for path in asked.records],
-            "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
-            "deviations": deviations(runs, machine, constants)}
+              "records": [str(path) for path in asked.records],
+              "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
+              "deviations": deviations(runs, machine, constants)}
     if asked.leave_one_out:
         result["leaving_one_out"] = leaving_one_out(runs, machine)
     asked.output.mkdir(parents=True, exist_ok=True)

@@ -21,7 +21,7 @@ def lost(frame, series):
     by cause. `outside`: the time of all cores in equation 1 that no cause has. Empty if rows have no causes."""
     shown = scaling.first_of(series, "simulated")
     causes = sorted((name.removeprefix(PREFIX) for name in frame if name.startswith(PREFIX)),
-                  key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
+                    key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
     if shown is None or not causes:
         return pandas.DataFrame(columns=COLUMNS)
     rows = scaling.rows_of(frame, shown).dropna(subset=PREFIX + causes[0])

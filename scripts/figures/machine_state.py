@@ -43,8 +43,8 @@ def remarks(frame):
         busy = disturbed["environment.busy_elsewhere"].astype(float).mean()
         processors = int(disturbed["environment.usable_processors"].iloc[-1])
         remarks.append(f"Other work kept {busy:.1f} of {processors} processors busy during {len(disturbed)} of "
-                    f"{len(measured)} runs: measured claims are not resolved.")
+                       f"{len(measured)} runs: measured claims are not resolved.")
     if moved:
         remarks.append(f"The machine's speed moved during the rounds of {moved} of {len(measured)} runs: their times "
-                    "do not count.")
+                       "do not count.")
     return remarks

@@ -1,4 +1,4 @@
-// The last step of smoothing.h: undoes the growth of labels.
+// The last step of smoothing.h: undoes the growth and shrinking of labels.
 #pragma once
 
 #include <cstdint>

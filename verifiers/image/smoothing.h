@@ -12,7 +12,7 @@
 // depth h/2: the stairs of voxels. No depth is less than h/20.
 //
 // The weight is the depth divided by the greatest depth that is distinguished, 1.1 W or h/2 if that is
-// more, rounded to 65535ths. Where such weights let a label grow or shrink, the growth is undone. The faces
+// more, rounded to 65535ths. Where such weights let a label grow or shrink, this change is undone. The faces
 // of a voxel of U are its faces to neighbours of other labels in the grid. A face across an axis counts
 // round(256 * the shortest spacing / the axis's spacing), and at least 1. The lead of a face is the weight
 // of its voxel minus the weight of the neighbour. The mean of half the lead over all faces of voxels of the
