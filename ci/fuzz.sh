@@ -41,28 +41,29 @@ export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:"${UBSAN_OPTIONS-}"
 corpus_of() { echo "$(dirname "$(echo "$sources" | grep "/$1\.cpp$")")/corpus/$1"; }
 files_in() { find "$1" -type f | wc -l; }
 bytes_in() { find "$1" -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum + 0 }'; }
-told() { sed -n "s/^stat::$1: *//p" "$2"; }
+statistic() { sed -n "s/^stat::$1: *//p" "$2"; }
 
-# Inputs named by their hash are removed from the seeds and compete again with the learnt inputs.
+# Inputs named by their hash are removed from the seeds and compete again with the inputs that fuzzing found.
 merge() {
-  target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1
-  mkdir -p "$seeds" "$learnt"
-  find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$learnt"
-  $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$learnt" \
+  target=$1 seeds=$(corpus_of "$1") found=$build/corpus/$1
+  mkdir -p "$seeds" "$found"
+  find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$found"
+  $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$found" \
     > $build/log/merge 2>&1 || { tail -n 30 $build/log/merge; exit 1; }
 }
 
 fuzz() {
-  target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1 log=$build/log/$1
-  mkdir -p "$seeds" "$learnt"
+  target=$1 seeds=$(corpus_of "$1") found=$build/corpus/$1 log=$build/log/$1
+  mkdir -p "$seeds" "$found"
   start=$(date +%s)
   if [ -n "${FUZZ_RUNS-}" ]; then set -- -runs="$FUZZ_RUNS" -max_total_time="${FUZZ_SECONDS:-0}"
   else set -- -max_total_time="${FUZZ_SECONDS:-15}"; fi
-  $build/bin/"$target" "$learnt" "$seeds" "$@" -seed="${FUZZ_SEED:-1}" -max_len=$longest -timeout=30 \
+  $build/bin/"$target" "$found" "$seeds" "$@" -seed="${FUZZ_SEED:-1}" -max_len=$longest -timeout=30 \
     -rss_limit_mb=4096 -artifact_prefix=$build/findings/"$target"- -print_final_stats=1 -verbosity=0 -print_funcs=0 \
     > "$log" 2>&1 ||
     { tail -n 60 "$log"; echo "ci/fuzz.sh: $target found something, see $log and $build/findings/" >&2; exit 1; }
-  printf '%s %s %s\n' "$target" "$(told number_of_executed_units "$log")" $(($(date +%s) - start)) >> $build/log/table
+  runs=$(statistic number_of_executed_units "$log")
+  printf '%s %s %s\n' "$target" "$runs" $(($(date +%s) - start)) >> $build/log/table
 }
 
 mkdir -p $build/findings $build/log

@@ -38,10 +38,9 @@ void add_run(CLI::App& program, int& exit_code) {
   app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")
       ->option_text(" ")
       ->required();
-  app.add_option("--only", command.only,
-                 "run the trials of this name alone; * and ? match any [default: all]")
+  app.add_option("--only", command.only, "run only trials of this name; * and ? match any [default: all]")
       ->option_text("PATTERN");
-  app.add_option("--tier", state->tier, "run this much: kick-tires, default or full [default: all]")
+  app.add_option("--tier", state->tier, "run this tier: kick-tires, default or full [default: all]")
       ->option_text("kick-tires|default|full");
   app.add_option("--image", command.images,
                  "a label image in place of all inputs; repeatable [default: the inputs]")
@@ -100,7 +99,7 @@ void add_verdicts(CLI::App& program, int& exit_code) {
 
 void add_latency(CLI::App& program, int& exit_code) {
   const auto path = std::make_shared<std::string>();
-  CLI::App& app = *program.add_subcommand("latency", "measure a load from each level of memory, Table 3");
+  CLI::App& app = *program.add_subcommand("latency", "measure the latency of each memory level, Table 3");
   app.add_option("--record", *path, "write it as JSON to this file [default: standard output]")
       ->option_text("FILE");
   app.callback([path, &exit_code] { exit_code = latency(*path); });
@@ -109,7 +108,7 @@ void add_latency(CLI::App& program, int& exit_code) {
 void add_machine(CLI::App& program, int& exit_code) {
   const auto as_json = std::make_shared<bool>(false);
   CLI::App& app =
-      *program.add_subcommand("machine", "print what identifies this machine and how fast it is now");
+      *program.add_subcommand("machine", "print the identity and the present speed of this machine");
   app.add_flag("--json", *as_json, "print one line of JSON, as rows hold it [default: words]");
   app.callback([as_json, &exit_code] { exit_code = show_machine(*as_json); });
 }
@@ -131,8 +130,8 @@ void add_gate(CLI::App& program, int& exit_code) {
   const auto state = std::make_shared<State>();
   GateOptions& options = state->options;
   options.head = beside_this_program("podm");
-  CLI::App& app =
-      *program.add_subcommand("gate", "judge a change of the mesher; exits with 1 when it may not go in");
+  CLI::App& app = *program.add_subcommand(
+      "gate", "judge a change of the mesher; exits with 1 when it must not be merged");
   app.add_option("--head", options.head, "file of the mesher to judge [default: podm beside this program]")
       ->option_text("FILE");
   app.add_option("--base", options.base, "file of the mesher before the change [default: compare no seconds]")
@@ -146,7 +145,8 @@ void add_gate(CLI::App& program, int& exit_code) {
   app.add_option("--order-seed", options.order_seed,
                  fmt::format("draws the order within each round [default: {}]", options.order_seed))
       ->option_text("N");
-  app.add_flag("--renew", state->renews, "put what the head does into the file of budgets [default: judge]");
+  app.add_flag("--renew", state->renews,
+               "write the work of the head into the file of budgets [default: judge]");
   app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
 }
 
@@ -157,7 +157,7 @@ void add_gate_evidence(CLI::App& program, int& exit_code) {
       "gate-evidence", "count how often the gate's answer about seconds errs on recorded rounds");
   app.add_option("FILE", command->rounds_path, "JSON lines of the rounds")->option_text(" ")->required();
   app.add_option("--rounds", command->num_rounds,
-                 "record so many more rounds first, with planted slowdowns [default: 0]")
+                 "first record this number of further rounds, with planted slowdowns [default: 0]")
       ->option_text("N")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--podm", command->podm, "file of the mesher to record [default: podm beside this program]")
@@ -193,7 +193,7 @@ void add_gate_simulation(CLI::App& program, int& exit_code) {
 }
 
 int main_or_throw(int argc, char** argv) {
-  CLI::App program("Runs mesher experiments, one process a trial, and records each as a JSON line.",
+  CLI::App program("Runs mesher experiments, one process per trial, and records each as a JSON line.",
                    "podm-bench");
   program.set_version_flag("--version", "podm-bench " PODM_VERSION);
   program.require_subcommand(1);

@@ -38,7 +38,7 @@ CLI::Validator positive() {
             double value = 0;
             const bool is_positive =
                 CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
-            return is_positive ? std::string() : fmt::format("'{}' is no positive, finite number", text);
+            return is_positive ? std::string() : fmt::format("'{}' is not a positive, finite number", text);
           },
           ""};
 }
@@ -48,7 +48,7 @@ CLI::Validator angle_from(double least, double most) {
             double value = 0;
             const bool is_angle = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
             return is_angle ? std::string()
-                            : fmt::format("'{}' is no angle of {} to {} degrees", text, least, most);
+                            : fmt::format("'{}' is not an angle of {} to {} degrees", text, least, most);
           },
           ""};
 }
@@ -61,12 +61,12 @@ void declare_inputs(CLI::App& app, Command& command) {
       ->required();
   app.option_defaults()->group("Inputs");
   app.add_option("--image", options.image_path,
-                 "segmented image, for the claims labels, surface_vertices and fidelity, and topology\n"
-                 "beside the mesh's: NIfTI, NRRD, MetaImage or INR")
+                 "segmented image: NIfTI, NRRD, MetaImage or INR; for the claims labels,\n"
+                 "surface_vertices and fidelity, and to compare its topology with the mesh's")
       ->option_text("FILE");
   app.add_option("--space", command.space,
                  "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
-                 "[default: what its file says, else RAS]")
+                 "[default: as stated in its file, otherwise RAS]")
       ->option_text("RAS|LPS|voxel")
       ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
   app.add_option("--schedule", options.schedule_path,
@@ -76,21 +76,21 @@ void declare_inputs(CLI::App& app, Command& command) {
 
 // Declares the options of `podm mesh` that select a part of the image's labels.
 void declare_selection(CLI::App& app, Command& command) {
-  app.option_defaults()->group("What was meshed of the image, as podm mesh was told");
+  app.option_defaults()->group("Selection of labels, as given to podm mesh");
   CLI::Option* image = app.get_option("--image");
-  app.add_option("--labels", command.labels, "these label values only, e.g. 1,3-7 [default: all]")
+  app.add_option("--labels", command.labels, "keep only these label values, e.g. 1,3-7 [default: all]")
       ->option_text("RANGES")
       ->needs(image);
-  app.add_option("--drop", command.drop, "these label values are background [default: none]")
+  app.add_option("--drop", command.drop, "turn these label values into background [default: none]")
       ->option_text("RANGES")
       ->needs(image);
   app.add_option("--merge", command.merges,
-                 "one label is made of several, e.g. 2,3=kidney; repeatable [default: none]")
+                 "merge label values into the first, e.g. 2,3=kidney; repeatable [default: none]")
       ->option_text("VALUES=NAME")
       ->allow_extra_args(false)
       ->needs(image);
   app.add_option("--drop-islands", command.options.selection.drop_islands_mm3,
-                 "components of a label below this, mm^3, are their neighbours' [default: none]")
+                 "components of a label below this volume, mm^3, join a neighbour [default: none]")
       ->option_text("MM3")
       ->check(positive())
       ->needs(image);
@@ -101,8 +101,8 @@ void declare_selection(CLI::App& app, Command& command) {
       ->option_text("VALUE");
   app.add_option(
          "--smooth", command.options.smooth_mm,
-         "width by which interfaces of the image were smoothed [default: as the mesh file says, else\n"
-         "none]")
+         "width by which interfaces of the image were smoothed [default: as stated in the mesh file,\n"
+         "otherwise none]")
       ->option_text("MM")
       ->check(positive())
       ->needs(image);
@@ -118,7 +118,7 @@ void declare_claims(CLI::App& app, Command& command) {
   app.add_option(
          "--claims", command.claims,
          fmt::format(
-             "check these alone, separated by commas [default: all whose inputs and bounds are given]:\n{}",
+             "check only these, separated by commas [default: all whose inputs and bounds are given]:\n{}",
              names))
       ->option_text("NAMES");
   app.add_option("--radius-edge", options.radius_edge_bound,
@@ -135,45 +135,47 @@ void declare_claims(CLI::App& app, Command& command) {
       ->option_text("MM")
       ->check(positive());
   app.add_option("--radius-of", command.radius_of,
-                 "the same for one label value; repeatable [default: --radius]")
+                 "size: the same for one label value; repeatable [default: --radius]")
       ->option_text("LABEL=MM")
       ->allow_extra_args(false);
   CLI::Option* size_image =
       app.add_option("--size-image", options.size_image_path,
-                     "size: bounds by place, a volume of mm as podm mesh was given it [default: none]")
+                     "size: local bounds, a volume of lengths in mm as given to podm mesh [default: none]")
           ->option_text("FILE");
   app.add_option(
          "--size-factor", options.size_factor,
-         fmt::format("these times this, as podm mesh records of a target (size_image_factor) [default: {}]",
-                     options.size_factor))
+         fmt::format(
+             "factor of these bounds; podm mesh records that of a target as size_image_factor [default: {}]",
+             options.size_factor))
       ->option_text("X")
       ->check(positive())
       ->needs(size_image);
   CLI::Option* image = app.get_option("--image");
   app.add_option("--size-near", command.size_near,
-                 "size: largest circumradius within WIDTH mm of where labels A and B meet, by\n"
-                 "value, 0 being background, several of a side joined by +; repeatable\n"
+                 "size: largest circumradius within WIDTH mm of the interface of labels A and B,\n"
+                 "given as values; 0 is background, + joins several values of a side; repeatable\n"
                  "[default: none; WIDTH: MM]")
       ->option_text("A,B=MM:WIDTH")
       ->allow_extra_args(false)
       ->needs(image);
   app.add_option("--grade", options.grade,
-                 "size: bounds of labels and by place grow by no more than G mm a mm of the way;\n"
-                 "within a slack that the report tells [default: at once]")
+                 "size: bounds of labels and local bounds grow by at most G mm per mm of distance,\n"
+                 "within a slack that the report states [default: no limit]")
       ->option_text("G")
       ->check(positive())
       ->needs(image);
   app.add_option("--min-dihedral", options.min_dihedral_deg,
-                 "dihedral: least angle between facets of a cell [default: as the file promises]")
+                 "dihedral: least dihedral angle of a cell [default: as the file promises]")
       ->option_text("DEGREES")
       ->check(angle_from(0, 90));
-  app.add_option("--max-dihedral", options.max_dihedral_deg, "the largest [default: as the file promises]")
+  app.add_option("--max-dihedral", options.max_dihedral_deg,
+                 "dihedral: largest dihedral angle of a cell [default: as the file promises]")
       ->option_text("DEGREES")
       ->check(angle_from(90, 180));
   app.add_option(
          "--fidelity-voxels", options.fidelity_bound_voxels,
          fmt::format("95 % of the interfaces of mesh and image are within this of each other [default: {},\n"
-                     "since an image does not tell where between two voxels a label ends]",
+                     "since the label may end anywhere between two voxels]",
                      options.fidelity_bound_voxels))
       ->option_text("VOXELS")
       ->check(positive());
@@ -185,8 +187,8 @@ void declare_claims(CLI::App& app, Command& command) {
       ->option_text("VOXELS")
       ->check(positive());
   app.add_option("--delta", options.delta_mm,
-                 "surface sampling distance of a PODM mesh: fidelity passes within 2 delta, too, and\n"
-                 "labels reach as far, as its rules prove; podm mesh tells and records it\n"
+                 "surface sampling distance of a PODM mesh: fidelity also passes within 2 delta, and\n"
+                 "labels reach as far, as its rules prove; podm mesh prints and records it\n"
                  "[default: none]")
       ->option_text("MM")
       ->check(positive());
@@ -199,12 +201,12 @@ void declare_report(CLI::App& app, Command& command) {
                  "write the report as JSON, - for standard output; its schema is podm-verify/1")
       ->option_text("FILE");
   app.add_option("--extract-bad", options.extract_bad_path,
-                 "write the cells that violate a claim, and which, as .vtu")
+                 "write the cells that violate a claim, and the claim, as .vtu")
       ->option_text("FILE");
   app.add_option("--threads", options.threads, "verdicts do not depend on it [default: all cores]")
       ->option_text("N")
       ->check(CLI::Range(1, 4096));
-  app.add_flag("--quiet", command.quiet, "no report for people");
+  app.add_flag("--quiet", command.quiet, "print no text report");
   app.set_version_flag("--version", std::string("podm-verify " PODM_VERSION "\n") + build_info());
 }
 
@@ -226,7 +228,7 @@ void refuse_to_overwrite_inputs(const Options& options) {
     for (const std::string& input :
          {options.mesh_path, options.image_path, options.schedule_path, options.size_image_path})
       if (!output.empty() && !input.empty() && fs::equivalent(output, input, error))
-        throw InputError(fmt::format("{}: is an input, and would be written over", output));
+        throw InputError(fmt::format("{}: is an input and would be overwritten", output));
 }
 
 void finish_options(Command& command) {
@@ -296,7 +298,7 @@ int main_or_throw(int argc, char** argv) {
   return verify(command);
 }
 
-int complain(const std::string& fault, int exit_code) {
+int report_error(const std::string& fault, int exit_code) {
   fmt::print(stderr, "podm-verify: {}\n", fault);
   return exit_code;
 }
@@ -312,10 +314,10 @@ int main(int argc, char** argv) {
   try {
     return main_or_throw(argc, argv);
   } catch (const InputError& error) {
-    return complain(error.what(), kBadInput);
+    return report_error(error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory", kInternal);
+    return report_error("out of memory", kInternal);
   } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), kInternal);
+    return report_error(std::string("internal error: ") + error.what(), kInternal);
   }
 }

@@ -110,7 +110,7 @@ void check_claims(const Options& options) {
     if (std::any_of(all_claims().begin(), all_claims().end(), is_named)) continue;
     std::string known;
     for (const Claim& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
-    throw InputError(fmt::format("--claims: no claim '{}', nearest is '{}'; there are {}", name,
+    throw InputError(fmt::format("--claims: no claim '{}', nearest is '{}'; known claims: {}", name,
                                  nearest_claim(name), known));
   }
 }
@@ -152,7 +152,7 @@ std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options
     const auto claim = std::find_if(all_claims().begin(), all_claims().end(),
                                     [&](const Claim& known) { return known.name == name; });
     if (!is_sound && name != "structure") {
-      results.push_back(not_run(name, "the mesh is empty or has vertex ids or coordinates that are none"));
+      results.push_back(not_run(name, "the mesh is empty or has invalid vertex ids or coordinates"));
     } else if (claim->needs == Needs::kImage && !inputs.image) {
       results.push_back(not_run(name, "no image given (--image)"));
     } else {

@@ -30,7 +30,7 @@ class Lines {
     if (!std::getline(file_, text)) return false;
     ++line_;
     json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) fail("is no JSON object");
+    if (!json.is_object()) fail("is not a JSON object");
     return true;
   }
   [[noreturn]] void fail(const std::string& fault) const {
@@ -68,7 +68,7 @@ Leaf leaf(const Json& json, const Lines& lines) {
     lines.fail("a leaf is not [i, j, k, side] with numbers up to 2^40");
   const Leaf leaf{{json[0], json[1], json[2]}, json[3]};
   if (leaf.side <= 0 || !std::has_single_bit(static_cast<std::uint64_t>(leaf.side)))
-    lines.fail("a leaf's side is no power of two");
+    lines.fail("a leaf's side is not a power of two");
   return leaf;
 }
 
@@ -100,7 +100,7 @@ Schedule read_schedule(const std::string& path) {
   Lines lines(path);
   Json json;
   if (!lines.next(json) || json.value("schema", Json()) != kSchema)
-    throw InputError(fmt::format("{}: line 1: is not the head of a schedule ({})", path, kSchema));
+    throw InputError(fmt::format("{}: line 1: is not the header of a schedule ({})", path, kSchema));
   Schedule schedule;
   schedule.path = path;
   schedule.algorithm =

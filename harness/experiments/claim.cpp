@@ -199,10 +199,10 @@ Claim read_claim(TomlSection& section, const Trials& all_trials) {
   claim.extent = static_cast<Extent>(
       read_word(section, "extent", std::array{"all", "one socket", "most threads"}, false));
   if (claim.extent == Extent::kOneSocket && claim.basis != Basis::kMeasured)
-    section.fail(section.place("extent"), "rows do not tell the sockets of a simulated machine");
+    section.fail(section.place("extent"), "rows do not record the sockets of a simulated machine");
   claim.needs_cores = static_cast<int>(section.count("needs_cores", 0, 1, kMostCores));
   if (claim.needs_cores > 0 && claim.basis != Basis::kMeasured)
-    section.fail(section.place("needs_cores"), "needs_cores is of measured rows alone");
+    section.fail(section.place("needs_cores"), "needs_cores applies to measured rows only");
   claim.value = read_measure(section, claim.basis);
   read_kind(section, trials, claim);
   claim.supersedes = read_texts(section, "supersedes");
@@ -225,7 +225,7 @@ std::string describe_bound(const Claim& claim) {
   if (claim.kind == ClaimKind::kTrend) {
     const char* direction = claim.grows ? "grows" : "falls";
     return claim.factor_per_doubling > 0
-               ? fmt::format("{} by at least {} a doubling", direction, claim.factor_per_doubling)
+               ? fmt::format("{} by at least {} per doubling", direction, claim.factor_per_doubling)
                : direction;
   }
   std::vector<std::string> parts;

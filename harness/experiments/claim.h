@@ -68,7 +68,7 @@ Claim read_claim(TomlSection& section, const std::vector<ClaimedTrial>& trials);
 /// Reads one [[withdrawn]]. Throws as read_claim() does.
 WithdrawnClaim read_withdrawn_claim(TomlSection& section);
 
-/// "at least 0.9 and at most 1.1", "above 1", "falls by at least 1.4 a doubling".
+/// "at least 0.9 and at most 1.1", "above 1", "falls by at least 1.4 per doubling".
 std::string describe_bound(const Claim& claim);
 
 }  // namespace podm::bench

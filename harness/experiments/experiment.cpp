@@ -51,7 +51,7 @@ Tier read_tier(TomlSection& section, Tier otherwise) {
 }
 
 // Reads settings that the head of the file and each trial may set. The trial's own setting wins.
-void read_conduct(TomlSection& section, Trial& trial) {
+void read_run_settings(TomlSection& section, Trial& trial) {
   trial.timeout_s = section.positive("timeout_s", trial.timeout_s);
   trial.memory_limit_gib = section.positive("memory_limit_gib", trial.memory_limit_gib);
   trial.repeats = static_cast<int>(section.count("repeats", trial.repeats, 1, kMaxRepeats));
@@ -122,7 +122,7 @@ std::vector<Trial> read_trials(TomlSection& section, const Inputs& inputs, const
                                const std::string& folder, const std::vector<std::string>& images) {
   Trial common = head;
   common.name = read_name(section);
-  read_conduct(section, common);
+  read_run_settings(section, common);
   const std::vector<NamedInput> named_inputs = inputs_of_trials(section, inputs, images);
   const std::vector<Variant> variants = read_matrix(section, folder);
   section.done();
@@ -178,7 +178,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   experiment.expected_minutes = file.positive("expected_minutes", 0);
   Trial head;
   head.timeout_s = kDefaultTimeoutS;
-  read_conduct(file, head);
+  read_run_settings(file, head);
   experiment.tier = head.tier;
   const Inputs inputs = read_inputs(file, folder);
   std::set<std::string> names;

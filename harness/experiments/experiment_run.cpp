@@ -216,7 +216,8 @@ class ExperimentRun {
     if (const auto found = session_.preparer.find(trial)) return *found;
     const ScratchFolder scratch(session_.command.results_folder);
     return session_.preparer.make(
-        trial, scratch.path(), [&](const std::string& step) { progress.tell(step); }, stop_query(progress));
+        trial, scratch.path(), [&](const std::string& step) { progress.show_step(step); },
+        stop_query(progress));
   }
 
   StopQuery stop_query(Progress& progress) const {
@@ -229,7 +230,7 @@ class ExperimentRun {
   // Removes the mesh before the row is written. The mesh then takes no disk time, and the row finds space.
   TrialResult run_in_scratch_folder(const Trial& trial, const Turn& turn, const TrialResult& prepared,
                                     Progress& progress) {
-    progress.tell("");
+    progress.show_step("");
     const ScratchFolder scratch(session_.command.results_folder);
     TrialResult result =
         session_.runner.run(trial, prepared.preparation, scratch.path(), stop_query(progress));

@@ -13,7 +13,7 @@ namespace podm::bench {
 namespace {
 
 // Notes what a group lacks. A claim is not decided by the other groups while one group lacks rows.
-void lack(Findings& findings, const std::string& what, const std::string& label) {
+void add_missing(Findings& findings, const std::string& what, const std::string& label) {
   if (findings.missing.empty()) findings.missing = label.empty() ? what : label + ": " + what;
   findings.has_failed_rows = findings.has_failed_rows || what.starts_with(kRowsFailed);
 }
@@ -38,7 +38,7 @@ std::string with_unit(double value, const Measure& measure) {
 void judge_bound_of(const Claim& claim, const RowPointers& rows, const std::string& label,
                     Findings& findings) {
   const Samples samples = sample(rows, *claim.value);
-  if (!samples.absence.empty()) return lack(findings, samples.absence, label);
+  if (!samples.absence.empty()) return add_missing(findings, samples.absence, label);
   const Estimate estimate = estimate_of(samples);
   findings.found.push_back(judge_number(bounds_of(claim), estimate, with_unit(estimate.value, *claim.value),
                                         label, samples.num_rows));
@@ -79,12 +79,12 @@ void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings
       no = ", not " + row->trial;
     }
   }
-  const auto num_told = static_cast<double>(rows.size() - num_open);
+  const auto num_decided = static_cast<double>(rows.size() - num_open);
   const double most = static_cast<double>(num_yes + num_open) / static_cast<double>(rows.size());
-  if (!absence.empty() && most >= *claim.at_least) return lack(findings, absence, "");
+  if (!absence.empty() && most >= *claim.at_least) return add_missing(findings, absence, "");
   Estimate share;
-  share.value = num_told > 0 ? static_cast<double>(num_yes) / num_told : 0;
-  Finding finding = judge_number(bounds_of(claim), share, fmt::format("{} of {}{}", num_yes, num_told, no),
+  share.value = num_decided > 0 ? static_cast<double>(num_yes) / num_decided : 0;
+  Finding finding = judge_number(bounds_of(claim), share, fmt::format("{} of {}{}", num_yes, num_decided, no),
                                  "", rows.size());
   if (!doubt.empty() && most >= *claim.at_least) finding.decision = {Outcome::kNotResolved, doubt, {}, false};
   findings.found.push_back(std::move(finding));
@@ -134,16 +134,16 @@ void compare_series(const Claim& claim, const RowGroup& group, const std::string
   }
   const auto is_free = [&](const std::string& key) { return may_differ(claim, key); };
   if (claim.over_best && over_rows.empty())
-    return lack(findings, "no rows to compare with " + describe(claim.of), label);
+    return add_missing(findings, "no rows to compare with " + describe(claim.of), label);
   for (const auto& [filter, rows] : {std::pair(&claim.over, &over_rows), {&claim.of, &of_rows}}) {
     if (const std::string value = missing_value(*filter, *rows); !value.empty())
-      return lack(findings, "no rows: " + value, label);
-    if (rows->empty()) return lack(findings, "no rows: " + describe(*filter), label);
+      return add_missing(findings, "no rows: " + value, label);
+    if (rows->empty()) return add_missing(findings, "no rows: " + describe(*filter), label);
   }
   std::vector<Side> ofs = sides_of(of_rows, claim, is_free), overs = sides_of(over_rows, claim, is_free);
   for (auto* sides : {&ofs, &overs})
     std::erase_if(*sides, [&](const Side& side) {
-      if (!side.samples.absence.empty()) lack(findings, side.samples.absence, label);
+      if (!side.samples.absence.empty()) add_missing(findings, side.samples.absence, label);
       return !side.samples.absence.empty();
     });
   if (overs.empty()) return;
@@ -203,14 +203,15 @@ void judge_trend_of(const Claim& claim, const RowGroup& group, const std::string
     if (place.is_number() && place > 0) by_place[place].push_back(row);
   }
   if (by_place.size() < 2)
-    return lack(findings, fmt::format("needs two values of {}, has {}", claim.along, by_place.size()), label);
+    return add_missing(findings, fmt::format("needs two values of {}, has {}", claim.along, by_place.size()),
+                       label);
   std::vector<Place> places;
   for (const auto& [at, rows] : by_place) {
     Place place{at, sample(rows, *claim.value)};
     if (place.samples.absence.empty())
       places.push_back(std::move(place));
     else
-      lack(findings, place.samples.absence, label);
+      add_missing(findings, place.samples.absence, label);
   }
   for (std::size_t i = 1; i < places.size(); ++i)
     findings.found.push_back(judge_step(claim, places[i - 1], places[i], places.size() == 2, label));

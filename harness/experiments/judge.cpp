@@ -27,7 +27,7 @@ int weight_of(const Finding& finding) {
 }
 
 // "3 of 4 hold; threads=256: 1.2 over 2.4 s".
-std::string told(const Findings& findings, const Finding& worst) {
+std::string describe(const Findings& findings, const Finding& worst) {
   const auto& found = findings.found;
   const auto is_same = [&](const Finding& other) { return other.text == worst.text; };
   if (does_hold(worst) && found.size() > 1 && std::all_of(found.begin(), found.end(), is_same))
@@ -80,7 +80,7 @@ Attempt conclude(const Findings& findings) {
   judgement.interval = worst->estimate.interval;
   judgement.num_rounds = worst->estimate.num_rounds;
   judgement.rounds_needed = worst->decision.rounds_needed;
-  judgement.reason = told(findings, *worst);
+  judgement.reason = describe(findings, *worst);
   return attempt;
 }
 
@@ -96,10 +96,10 @@ double packages_of(const Row& row) {
 }
 
 // Returns the reason why the rows' machine cannot decide the claim; empty: it can.
-std::string lack_of_cores(const Claim& claim, const RowPointers& rows) {
+std::string missing_cores(const Claim& claim, const RowPointers& rows) {
   if (claim.needs_cores == 0) return "";
   const auto cores = cores_of(*rows.front());
-  if (!cores) return "the rows do not tell how many cores their machine has";
+  if (!cores) return "the rows do not record how many cores their machine has";
   return *cores >= claim.needs_cores ? "" : fmt::format("needs {} cores, has {}", claim.needs_cores, *cores);
 }
 
@@ -142,17 +142,17 @@ Attempt judge_size(const Claim& claim, const std::vector<Row>& all_rows, const s
   const Chosen chosen = choose(claim, all_rows, pattern);
   const RowPointers rows = within_extent(claim, chosen.rows);
   Attempt attempt;
-  const std::string lacking = missing_value(claim.where, rows);
+  const std::string missing = missing_value(claim.where, rows);
   if (rows.empty()) {
     attempt.judgement.reason =
         pattern.empty() ? "no rows" : fmt::format("no rows: trial {}", fmt::join(claim.trials, " or "));
-  } else if (const std::string lack = lack_of_cores(claim, rows); !lack.empty()) {
-    attempt.judgement.reason = lack;
+  } else if (const std::string reason = missing_cores(claim, rows); !reason.empty()) {
+    attempt.judgement.reason = reason;
   } else {
     attempt = conclude(find(claim, rows));
     // An incomplete set of rows can only refute the claim.
-    if (!lacking.empty() && attempt.judgement.verdict != Verdict::kDoesNotHold)
-      attempt.judgement = {Verdict::kCannotBeDecided, "no rows: " + lacking, {}, {}, 0, {}, {}, 0};
+    if (!missing.empty() && attempt.judgement.verdict != Verdict::kDoesNotHold)
+      attempt.judgement = {Verdict::kCannotBeDecided, "no rows: " + missing, {}, {}, 0, {}, {}, 0};
   }
   attempt.size = pattern;
   attempt.has_rows = !rows.empty();
@@ -204,7 +204,7 @@ Judgement conclude(const Claim& claim, const std::vector<Attempt>& attempts) {
   if (claim.trials.size() > 1)
     judgement.reason = fmt::format("{}: {}; judged at {}", decisive.size, judgement.reason,
                                    fmt::join(judgement.sizes, ", "));
-  if (!aside.empty()) judgement.reason += fmt::format("; of too few rounds: {}", fmt::join(aside, ", "));
+  if (!aside.empty()) judgement.reason += fmt::format("; too few rounds: {}", fmt::join(aside, ", "));
   return judgement;
 }
 

@@ -52,7 +52,7 @@ void Progress::start_turn(const std::string& label) {
   tick();
 }
 
-void Progress::tell(const std::string& step) {
+void Progress::show_step(const std::string& step) {
   step_ = step.empty() ? "" : ": " + step;
   drawn_ = start_ - kRedraw;
   tick();

@@ -33,7 +33,7 @@ class Progress {
 
   void start_turn(const std::string& label);
   /// Shows the step that runs before the turn's own process; empty: the steps are over.
-  void tell(const std::string& step);
+  void show_step(const std::string& step);
   void tick();
   void finish_turn(const std::string& line);
 

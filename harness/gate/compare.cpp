@@ -141,7 +141,7 @@ void check_machines(const std::vector<Group>& groups) {
         if (!names_its_machine(row)) continue;
         if (first == nullptr) first = &row;
         if (!same_machine(*first, row))
-          throw InputError(fmt::format("rows of two machines are in no ratio: {} and {}",
+          throw InputError(fmt::format("rows of two machines cannot be compared: {} and {}",
                                        machine_name(*first), machine_name(row)));
       }
 }
@@ -256,8 +256,8 @@ Rows read_record_file(const std::string& path) {
       const bool is_row = json.is_object() && json.contains("trial");
       rows.push_back(is_row ? from_json<Row>(json) : row_of(from_json<MeshRecord>(json)));
     } catch (const FieldError& fault) {
-      throw InputError(fmt::format("{}:{}: is no record of a trial or of the mesher: {}", path, line_number,
-                                   fault.what()));
+      throw InputError(fmt::format("{}:{}: is not a record of a trial or of the mesher: {}", path,
+                                   line_number, fault.what()));
     }
   }
   if (rows.empty()) throw InputError(fmt::format("{} holds no records", path));
@@ -266,7 +266,7 @@ Rows read_record_file(const std::string& path) {
 
 Comparison compare(const Rows& a, const Rows& b) {
   const auto groups = groups_of(a, b);
-  if (groups.empty()) throw InputError("no row of A measures what a row of B does");
+  if (groups.empty()) throw InputError("no row of A measures the same as a row of B");
   check_machines(groups);
   Comparison result;
   for (const Group& group : groups) add_differences(group, result);

@@ -45,7 +45,7 @@ bool instructions_fit(const Budgets& budgets, const Budget& budget, std::uint64_
   const std::string text =
       fmt::format("{}: {} instructions, {:.4f} of the budget", budget.trial.name, counted, ratio);
   if (budgets.build != this_build()) {
-    say(fmt::format("  {}, not compared: the budget is of {}", text, budgets.build));
+    say(fmt::format("  {}, not compared: the budget is for {}", text, budgets.build));
     return true;
   }
   const bool fits = ratio <= 1 + budgets.instructions_tolerance;
@@ -88,7 +88,7 @@ std::string text_of(const Slowdown& slowdown) {
                   text_of(slowdown.ratio), slowdown.num_rounds);
   if (slowdown.answer == Answer::kSlower) return "BLOCKS " + text;
   if (slowdown.answer == Answer::kNotSlower) return text;
-  return fmt::format("{}; blocks nothing; an answer would take some {:.0f} rounds", text,
+  return fmt::format("{}; blocks nothing; an answer would take about {:.0f} rounds", text,
                      slowdown.rounds_for_an_answer());
 }
 
@@ -133,7 +133,7 @@ void print_scaling(const GateTrial& trial, const std::string& podm, const GateMe
     if (threads == 1) one_thread = speed;
     const auto [committed, conflicts] = commits_and_conflicts(record);
     say(fmt::format(
-        "  {} threads: {:.0f} refined cells/s, {:.2f} of one thread; {:.4f} rollbacks a commit; "
+        "  {} threads: {:.0f} refined cells/s, {:.2f} of one thread; {:.4f} rollbacks per commit; "
         "seconds lost {}",
         threads, speed, speed / one_thread, conflicts / committed, to_json(record.overhead_s).dump()));
   }

@@ -85,8 +85,8 @@ std::uint64_t GateMesher::count_instructions(const std::string& podm, const Gate
   const std::string key = "Collected : ";
   const auto found = reply.messages.rfind(key);
   if (!reply.succeeded() || found == std::string::npos)
-    throw InputError(
-        fmt::format("callgrind counts no instructions of {} on {}: {}", podm, trial.image, reply.why_not()));
+    throw InputError(fmt::format("callgrind counts no instructions of {} on {}: {}", podm, trial.image,
+                                 reply.failure_text()));
   return std::stoull(reply.messages.substr(found + key.size()));
 }
 

@@ -55,7 +55,8 @@ ControlGroupLimits cgroup_limits() {
 std::variant<Sources, Unavailable> sources() {
   const Reply commit = ask({"git", "-C", PODM_SOURCE_DIR, "rev-parse", "HEAD"}),
               changes = ask({"git", "-C", PODM_SOURCE_DIR, "status", "--porcelain", "--untracked-files=no"});
-  if (!commit.succeeded() || !changes.succeeded()) return Unavailable{"the sources are in no git checkout"};
+  if (!commit.succeeded() || !changes.succeeded())
+    return Unavailable{"the sources are not in a git checkout"};
   return Sources{commit.text, !changes.text.empty()};
 }
 
@@ -74,7 +75,7 @@ ProgramRecord describe_program(const std::string& path) {
   std::istringstream lines(reply.succeeded() ? reply.text : "unavailable: --version fails");
   std::string version;
   std::getline(lines, version);
-  ProgramRecord program{sha256_of_file(path), version, Unavailable{"--version tells nothing of it"}};
+  ProgramRecord program{sha256_of_file(path), version, Unavailable{"--version reports no build"}};
   if (auto build = build_of(lines); !build.empty()) program.build = std::move(build);
   return program;
 }

@@ -38,7 +38,7 @@ Count number_in(const std::map<std::string, std::string>& values, const std::str
   try {
     return static_cast<std::uint64_t>(std::stoull(found->second, nullptr, 0));  // Arm also writes 0x41
   } catch (const std::exception&) {
-    return Unavailable{fmt::format("/proc/cpuinfo: '{}' is '{}', no number", key, found->second)};
+    return Unavailable{fmt::format("/proc/cpuinfo: '{}' is '{}', not a number", key, found->second)};
   }
 }
 

@@ -64,7 +64,7 @@ std::string kernel_name() {
 Count meminfo_bytes(const std::string& key) {
   const std::string kibibytes = value_of("/proc/meminfo", key);
   if (kibibytes.starts_with(Unavailable::kPrefix))
-    return Unavailable{fmt::format("/proc/meminfo does not tell '{}'", key)};
+    return Unavailable{fmt::format("/proc/meminfo has no '{}'", key)};
   return std::uint64_t{1024} * std::stoull(kibibytes);
 }
 
@@ -79,7 +79,7 @@ std::string value_in(std::istream& lines, const std::string& key) {
 std::string value_of(const std::string& path, const std::string& key) {
   std::ifstream file(path);
   const std::string value = value_in(file, key);
-  return value.empty() ? fmt::format("unavailable: {} does not tell '{}'", path, key) : value;
+  return value.empty() ? fmt::format("unavailable: {} has no '{}'", path, key) : value;
 }
 
 }  // namespace podm::bench

@@ -54,7 +54,7 @@ Measured likwid_bench(std::size_t bytes) {
       ask({"likwid-bench", "-t", "clload", "-w", fmt::format("N:{}B:1", bytes)}, kBenchTimeoutS);
   std::istringstream lines(reply.text);
   const std::string cycles = value_in(lines, "Cycles per cacheline");
-  if (!reply.succeeded() || cycles.empty()) return Unavailable{"likwid-bench: " + reply.why_not()};
+  if (!reply.succeeded() || cycles.empty()) return Unavailable{"likwid-bench: " + reply.failure_text()};
   return std::stod(cycles);
 }
 

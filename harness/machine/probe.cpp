@@ -46,7 +46,7 @@ ProbeRecord probe_here() {
 }
 
 // Writes a probe into the pipe and exits.
-[[noreturn]] void be_the_prober(int pipe) {
+[[noreturn]] void run_probe_in_child(int pipe) {
   try {
     const ProbeRecord probe = probe_here();
     _exit(write(pipe, &probe, sizeof probe) == sizeof probe ? 0 : 1);
@@ -80,7 +80,7 @@ Probe probe_machine() {
   int ends[2];
   if (pipe(ends) != 0) return Unavailable{std::strerror(errno)};
   const pid_t child = fork();
-  if (child == 0) be_the_prober(ends[1]);
+  if (child == 0) run_probe_in_child(ends[1]);
   const int error = errno;
   close(ends[1]);
   ProbeRecord probe;

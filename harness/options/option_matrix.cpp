@@ -51,14 +51,15 @@ struct MesherOption {
 };
 
 // Options of the harness; they are not passed to a mesher.
-constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
-                                kCopies, kCounters, kMeasure, kRanks,    kCarrier};
+constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
+                                     kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// Options of the harness for one process of podm; they exclude ranks.
-constexpr std::array kOfOneProcess{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
+// Options that the harness supports for one process of podm, and not for ranks.
+constexpr std::array kSingleProcessOptions{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.
-constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
+constexpr std::array kCommonOptions{kMesher,    "radius_mm", "delta_mm", kTargetElements,
+                                    kPerThread, "threads",   kSolve};
 
 template <class Keys>
 bool is_among(const Keys& keys, std::string_view key) {
@@ -82,7 +83,7 @@ Kind kind_of(const Json& option) {
 std::vector<MesherOption> options_of_podm() {
   std::ifstream file(PODM_OPTIONS);
   const Json declared = Json::parse(file, nullptr, false);
-  if (!declared.is_array()) throw InputError(PODM_OPTIONS ": it is not what `podm options` prints");
+  if (!declared.is_array()) throw InputError(PODM_OPTIONS ": not the output of `podm options`");
   std::vector<MesherOption> options;
   for (const Json& option : declared)
     if (const Json& uses = option.at("uses");
@@ -239,8 +240,8 @@ void refuse_second_size(const TomlSection& section) {
 void refuse_options_of_podm(const TomlSection& section, const Json& options) {
   if (options.value(kMesher, kPodm) == kPodm) return;
   for (const auto& [key, value] : options.items())
-    if (!is_among(kOfAll, key))
-      section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
+    if (!is_among(kCommonOptions, key))
+      section.fail(section.place(key), fmt::format("{} is an option of podm only", key));
 }
 
 void refuse_options_of_meshers(const TomlSection& section, const Json& options) {
@@ -252,7 +253,7 @@ void refuse_options_of_meshers(const TomlSection& section, const Json& options) 
 
 // Each copy is bound to one processor, and the kernel counts all copies together. Copies therefore exclude
 // several threads, pinning and counters.
-void refuse_crowded_copies(const TomlSection& section, const Json& options) {
+void refuse_options_excluded_by_copies(const TomlSection& section, const Json& options) {
   if (!options.contains(kCopies)) return;
   if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");
   for (const char* key : {"pin", kCounters})
@@ -260,7 +261,7 @@ void refuse_crowded_copies(const TomlSection& section, const Json& options) {
       section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
 }
 
-void refuse_strangers_to_ranks(const TomlSection& section, const Json& options) {
+void refuse_options_excluded_by_ranks(const TomlSection& section, const Json& options) {
   const auto need = [&](const char* key, const char* needed, bool is_there) {
     if (options.contains(key) && !is_there)
       section.fail(section.place(key), fmt::format("{} needs {}", key, needed));
@@ -271,7 +272,8 @@ void refuse_strangers_to_ranks(const TomlSection& section, const Json& options) 
   need(kNetwork, "ranks of carrier \"in-process\"", options.value(kCarrier, "") == kInProcess);
   if (!options.contains(kRanks)) return;
   for (const MesherOption& option : mesher_options())
-    if (options.contains(option.key) && (is_among(kOfOneProcess, option.key) || !option.not_on_ranks.empty()))
+    if (options.contains(option.key) &&
+        (is_among(kSingleProcessOptions, option.key) || !option.not_on_ranks.empty()))
       section.fail(section.place(option.key),
                    fmt::format("{} and {} exclude each other", kRanks, option.key));
 }
@@ -307,8 +309,8 @@ std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder
   for (Variant& variant : variants) {
     refuse_options_of_meshers(section, variant.options);
     refuse_options_of_podm(section, variant.options);
-    refuse_crowded_copies(section, variant.options);
-    refuse_strangers_to_ranks(section, variant.options);
+    refuse_options_excluded_by_copies(section, variant.options);
+    refuse_options_excluded_by_ranks(section, variant.options);
     scale_by(kPerThread, "threads", section, variant.options);
     scale_by(kPerRank, kRanks, section, variant.options);
   }
@@ -318,7 +320,7 @@ std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder
 std::vector<std::string> mesher_arguments(const Json& options) {
   std::vector<std::string> arguments;
   for (const auto& [key, value] : options.items()) {
-    if (value == false || is_among(kOfHarness, key)) continue;
+    if (value == false || is_among(kHarnessOptions, key)) continue;
     std::string name = key.ends_with(kMillimetres) ? key.substr(0, key.size() - 3) : key;
     std::replace(name.begin(), name.end(), '_', '-');
     arguments.push_back("--" + name);

@@ -24,7 +24,7 @@ std::string to_string(Tier tier) { return kTierNames[static_cast<std::size_t>(ti
 Tier parse_tier(const std::string& text) {
   const auto* const found = std::find(kTierNames.begin(), kTierNames.end(), text);
   if (found == kTierNames.end())
-    throw InputError(fmt::format("there is no tier '{}', but {}", text, fmt::join(kTierNames, ", ")));
+    throw InputError(fmt::format("unknown tier '{}'; known tiers: {}", text, fmt::join(kTierNames, ", ")));
   return static_cast<Tier>(found - kTierNames.begin());
 }
 

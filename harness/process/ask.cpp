@@ -42,27 +42,27 @@ std::string without_last_line_ends(const std::string& text) {
 
 }  // namespace
 
-std::string Reply::complaint() const {
+std::string Reply::error_text() const {
   std::string line = without_last_line_ends(messages);
   for (std::size_t end = 0; (end = line.find('\n', end)) != std::string::npos; end += 2)
     line.replace(end, 1, "; ");
   return line;
 }
 
-std::string Reply::why_not() const {
-  return messages.empty() ? outcome.describe() : fmt::format("{}: {}", outcome.describe(), complaint());
+std::string Reply::failure_text() const {
+  return messages.empty() ? outcome.describe() : fmt::format("{}: {}", outcome.describe(), error_text());
 }
 
 Reply ask(const std::vector<std::string>& arguments, double timeout_s, const StopQuery& stop_requested) {
-  const MemoryFile printed, complained;
+  const MemoryFile output, errors;
   Reply reply;
   reply.outcome = run_process({.arguments = arguments,
-                               .stdout_path = printed.path(),
-                               .stderr_path = complained.path(),
+                               .stdout_path = output.path(),
+                               .stderr_path = errors.path(),
                                .timeout_s = timeout_s},
                               stop_requested);
-  reply.text = without_last_line_ends(read_tail(printed.path(), kMaxReplyBytes));
-  reply.messages = read_tail(complained.path(), kMaxMessageBytes);
+  reply.text = without_last_line_ends(read_tail(output.path(), kMaxReplyBytes));
+  reply.messages = read_tail(errors.path(), kMaxMessageBytes);
   return reply;
 }
 

@@ -15,9 +15,9 @@ struct Reply {
 
   bool succeeded() const { return outcome.succeeded(); }
   /// Returns `messages` in one line.
-  std::string complaint() const;
-  /// Describes the end of a program that did not succeed, with its complaint.
-  std::string why_not() const;
+  std::string error_text() const;
+  /// Describes the end of a program that did not succeed, with its error text.
+  std::string failure_text() const;
 };
 
 inline constexpr double kReplyTimeoutS = 30;

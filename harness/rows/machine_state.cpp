@@ -63,9 +63,9 @@ std::string model_of(const Row& row) {
   if (!is_simulated(row)) return "";
   const std::string nodes = fmt::format("{} NUMA nodes", in_words(row.environment.numa_nodes));
   if (!row.mesh || !row.mesh->virtual_time) return nodes;
-  const Json& told = row.mesh->virtual_time->as_written;
+  const Json& record = row.mesh->virtual_time->as_written;
   const Json::json_pointer place("/machine/sha256");
-  return told.contains(place) && told[place].is_string() ? told[place].get<std::string>() : nodes;
+  return record.contains(place) && record[place].is_string() ? record[place].get<std::string>() : nodes;
 }
 
 double busy_elsewhere(const Row& row) {

@@ -257,7 +257,7 @@ Value deferred_operations(const Row& row) {
 }
 
 // Accesses to the own node and all accesses, or the reason why they are not available.
-struct Visits {
+struct AccessCounts {
   double near = 0, all = 0;
   std::string absence;
 
@@ -275,9 +275,9 @@ struct Visits {
 
 Value zero_hop_share(const Row& row) {
   if (!row.mesh || !row.mesh->hops) return absent("rows have no hops");
-  Visits visits;
-  visits.add(*row.mesh->hops);
-  return visits.near_share();
+  AccessCounts counts;
+  counts.add(*row.mesh->hops);
+  return counts.near_share();
 }
 
 // Counts also the accesses that Table 2 leaves out.
@@ -285,12 +285,12 @@ Value zero_hop_share_of_all_kinds(const Row& row) {
   if (!row.mesh || !row.mesh->hops_by_kind) return absent("rows have no hops_by_kind");
   const auto* const kinds = std::get_if<ByName<Hops>>(&*row.mesh->hops_by_kind);
   if (kinds == nullptr) return absent(std::get<Unavailable>(*row.mesh->hops_by_kind).text());
-  Visits visits;
+  AccessCounts counts;
   for (const auto& [kind, hops] : *kinds) {
-    visits.add(hops);
-    if (!visits.absence.empty()) return absent(fmt::format("{}: {}", kind, visits.absence));
+    counts.add(hops);
+    if (!counts.absence.empty()) return absent(fmt::format("{}: {}", kind, counts.absence));
   }
-  return visits.near_share();
+  return counts.near_share();
 }
 
 // Returns a count of the trial's process, or the reason why there is none.
@@ -346,8 +346,8 @@ Levels levels_of(const Row& row) {
     else
       levels.others.push_back(*cycles);
   }
-  if (levels.absence.empty() && levels.caches.empty()) levels.absence = "hwloc tells no caches";
-  if (levels.absence.empty() && !levels.own) levels.absence = "rows do not tell the own memory";
+  if (levels.absence.empty() && levels.caches.empty()) levels.absence = "hwloc lists no caches";
+  if (levels.absence.empty() && !levels.own) levels.absence = "rows do not record the memory of the own node";
   return levels;
 }
 
@@ -440,10 +440,10 @@ const PerturbedRecord* perturbed_of(const Row& row) {
   return row.mesh && row.mesh->perturbed ? &*row.mesh->perturbed : nullptr;
 }
 Value poor_share_left(const Row& row) {
-  const auto* const told = perturbed_of(row);
-  if (told == nullptr) return absent("rows have no perturbed");
-  return quotient({static_cast<double>(told->after.with_free_vertex), ""},
-                  {static_cast<double>(told->before.with_free_vertex), ""});
+  const auto* const perturbed = perturbed_of(row);
+  if (perturbed == nullptr) return absent("rows have no perturbed");
+  return quotient({static_cast<double>(perturbed->after.with_free_vertex), ""},
+                  {static_cast<double>(perturbed->before.with_free_vertex), ""});
 }
 
 Value beyond_bounds_per_million(const Row& row) {

@@ -1,4 +1,4 @@
-// Runs podm-bench as a user does, with a mesher made up by the test.
+// Runs podm-bench as a user does, with a mesher that the test writes.
 #pragma once
 
 #include <gtest/gtest.h>

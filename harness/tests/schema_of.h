@@ -187,7 +187,7 @@ inline void compare_shapes(Shape fields, Shape schema, const std::string& place,
       faults.push_back(fmt::format("{}: no value is called {}", place, word));
   if (!fields.members.empty()) {
     if (schema.members.size() != 1)
-      faults.push_back(fmt::format("{}: the schema does not tell its members", place));
+      faults.push_back(fmt::format("{}: the schema does not list its members", place));
     else
       compare_shapes(fields.members.front(), schema.members.front(), place + "/*", faults);
     return;

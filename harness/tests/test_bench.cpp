@@ -29,12 +29,12 @@ TEST_F(BenchTest, RecordsTheTrialsThatRanAndLeavesNoMesh) {
     EXPECT_NE(printed("out").find(word), std::string::npos) << word;
 }
 
-TEST_F(BenchTest, SecondRunSkipsWhatIsThereUnlessTold) {
+TEST_F(BenchTest, SecondRunSkipsMeasuredTrialsUnlessAgainIsGiven) {
   run_with(good_mesh_);
   EXPECT_EQ(run_with(good_mesh_), 0);
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
   EXPECT_TRUE(has_printed("err", "2 of them skipped: already in " + (folder_ / "results/exp.jsonl")));
-  EXPECT_TRUE(has_printed("out", "two")) << "the table tells them too";
+  EXPECT_TRUE(has_printed("out", "two")) << "the table lists them too";
   EXPECT_EQ(run_with(good_mesh_, {"--only", "two", "--again"}), 0);
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two", "two"}));
   EXPECT_EQ(run_with("# another mesher\n" + good_mesh_, {"--only", "one"}), 0);
@@ -129,7 +129,7 @@ TEST_F(BenchTest, RowsOfAnotherSchemaAreRefused) {
   EXPECT_TRUE(has_printed("err", "exp.jsonl:1: a row of schema 99")) << printed("err");
 }
 
-TEST_F(BenchTest, DryRunTellsWhatIsToDoAndDoesNothing) {
+TEST_F(BenchTest, DryRunListsTheRunsAndDoesNothing) {
   EXPECT_EQ(run_with("touch \"$(dirname \"$0\")/ran\"\n", {"--dry-run"}), 0) << printed("err");
   for (const char* words : {"one", "two", "--radius 2", "absent.nii (absent)", "3 runs, 3 to do"})
     EXPECT_TRUE(has_printed("out", words)) << words << " in\n" << printed("out");
@@ -200,7 +200,7 @@ TEST_F(BenchTest, KeepKeepsTheMesh) {
   EXPECT_TRUE(is_kept);
 }
 
-TEST_F(BenchTest, FailedTrialIsRecordedTheOthersStillRunAndTheExitCodeTells) {
+TEST_F(BenchTest, FailedTrialIsRecordedTheOthersStillRunAndTheExitCodeReportsIt) {
   EXPECT_EQ(run_with("case $* in *--radius*) exit 3;; esac\n"), 1);
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
   EXPECT_TRUE(is_tidy());

@@ -174,7 +174,7 @@ class Rows(unittest.TestCase):
             self.assertFalse(VALIDATOR.is_valid(row), name)
         self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
 
-    def test_rows_tell_radius_replay_fidelity_and_copies(self):
+    def test_rows_record_radius_replay_fidelity_and_copies(self):
         rows = {row["trial"]: row for row in rows_of(ALL_ASKED)}
         for row in rows.values():
             VALIDATOR.validate(row)

@@ -65,7 +65,7 @@ Counters Cachegrind::read(const std::string& folder) const {
   Counters counts;
   for (const char* name : kNames) {
     std::uint64_t value = 0;
-    if (!(totals >> value)) return {{kCachegrind, Unavailable{"valgrind did not come to its totals"}}};
+    if (!(totals >> value)) return {{kCachegrind, Unavailable{"valgrind wrote no totals"}}};
     counts[name] = Counter{value, kSource, {}};
   }
   return counts;

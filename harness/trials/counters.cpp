@@ -78,7 +78,7 @@ std::optional<double> of_getrusage(const Event& event, const ProcessOutcome& out
 
 std::variant<Counter, Unavailable> value_of(const Reading& reading, const char* source) {
   if (reading.running_ns == 0 && reading.enabled_ns > 0)
-    return Unavailable{"the processor's counters were never free"};
+    return Unavailable{"the processor's counters were always in use"};
   if (reading.running_ns == reading.enabled_ns) return Counter{reading.count, source, {}};
   const double share = static_cast<double>(reading.running_ns) / static_cast<double>(reading.enabled_ns);
   return Counter{std::round(static_cast<double>(reading.count) / share), source, share};

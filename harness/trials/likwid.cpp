@@ -50,7 +50,7 @@ std::string refusal_of(const std::string& events, const std::string& scratch_fol
   const Reply reply = ask(command);
   if (reply.succeeded()) return "";
   return fmt::format("{}: {}", kProgram,
-                     reply.messages.empty() ? reply.outcome.describe() : reply.complaint());
+                     reply.messages.empty() ? reply.outcome.describe() : reply.error_text());
 }
 
 // Returns the reason why there are no counts on a processor whose events likwid does not know. The program

@@ -20,7 +20,7 @@ Peer ask_for_version(const std::string& program, const std::string& podm) {
   const Reply reply = ask({program, "--version", "--podm", podm});
   const std::string line = first_line(reply.text);
   if (reply.succeeded()) return {program, line, {}};
-  return {program, {}, line.empty() ? program + " --version: " + reply.why_not() : line};
+  return {program, {}, line.empty() ? program + " --version: " + reply.failure_text() : line};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::string absence_of_ranks(const Trial& trial, const std::string& podm) {
   if (num_ranks(trial) == 0) return "";
   const std::string program = podm_mpi_of(podm);
   if (access(program.c_str(), X_OK) != 0)
-    return fmt::format("there is no {}: it is built where MPI is found, which scripts/setup installs",
+    return fmt::format("{} does not exist: it is built if MPI is found, which scripts/setup installs",
                        program);
   return is_over_mpi(trial.options) && !is_installed("mpirun") ? "mpirun is not installed" : "";
 }

@@ -41,9 +41,9 @@ InputRecord input_of(const Trial& trial, const TrialResult& result) {
 }  // namespace
 
 Basis basis_of(const Json& asked, const Counters& counters) {
-  const auto* const told = counters.find(kCachegrind);
+  const auto* const counter = counters.find(kCachegrind);
   const bool is_on_simulated_core = asked.value(kCounters, "") == kCachegrind &&
-                                    (told == nullptr || !std::holds_alternative<Unavailable>(*told));
+                                    (counter == nullptr || !std::holds_alternative<Unavailable>(*counter));
   const bool is_simulated = asked.value("executor", "threads") != "threads" || asked.contains("topology") ||
                             asked.value(kCarrier, "") == kInProcess || is_on_simulated_core;
   return is_simulated ? Basis::kSimulated : Basis::kMeasured;

@@ -22,7 +22,7 @@ std::string fault_of(const TrialResult& copy, const TrialResult& first) {
 }
 
 // The trial takes the first fault.
-void blame(const TrialResult& copy, int number, TrialResult& result) {
+void take_fault_of_copy(const TrialResult& copy, int number, TrialResult& result) {
   if (result.status != Status::kOk) return;
   const std::string fault = fault_of(copy, result);
   if (fault.empty()) return;
@@ -53,7 +53,7 @@ void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
     judge(trial, folder_of_copy(scratch_folder, i) + kRecordName, copy);
     if (copy.mesh) entries.push_back(entry_of(processors[at], *copy.mesh));
     if (i > 0) {
-      blame(copy, i + 1, result);
+      take_fault_of_copy(copy, i + 1, result);
       continue;
     }
     result.status = copy.status;
@@ -62,7 +62,7 @@ void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
     result.mesh = copy.mesh;
   }
   if (entries.size() == outcomes.size()) result.side_by_side = entries;
-  result.counters[kPerfEvent] = Unavailable{"the kernel counts processes side by side together"};
+  result.counters[kPerfEvent] = Unavailable{"the kernel counts concurrent processes together"};
 }
 
 }  // namespace podm::bench

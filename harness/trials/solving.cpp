@@ -9,7 +9,7 @@ Solving solve_on_mesh(const Trial& trial, const std::string& mesh_path, const st
                       const StopQuery& stop_requested) {
   const Reply reply = ask({program, mesh_path}, timeout_of_proof_s(trial), stop_requested);
   const bool is_interrupted = reply.outcome.end == ProcessOutcome::End::kInterrupted;
-  if (!reply.succeeded()) return {{}, "not solved: " + reply.why_not(), is_interrupted};
+  if (!reply.succeeded()) return {{}, "not solved: " + reply.failure_text(), is_interrupted};
   try {
     return {from_json<SolveRecord>(Json::parse(reply.text, nullptr, false), "solve"), "", false};
   } catch (const FieldError& error) {
@@ -18,10 +18,10 @@ Solving solve_on_mesh(const Trial& trial, const std::string& mesh_path, const st
 }
 
 std::string absence_of_solver(const std::string& program) {
-  if (program.empty()) return "there is no solver";
+  if (program.empty()) return "no solver is installed";
   const Reply reply = ask({program, "--version"});
   if (reply.succeeded()) return "";
-  return reply.text.empty() ? program + " --version: " + reply.why_not() : reply.text;
+  return reply.text.empty() ? program + " --version: " + reply.failure_text() : reply.text;
 }
 
 }  // namespace podm::bench

@@ -107,12 +107,12 @@ const std::optional<ImageSize>& TrialRunner::image_size(const std::string& image
 }
 
 std::string TrialRunner::why_skipped(const Trial& trial) {
-  if (trial.if_exists && !image_exists(trial)) return trial.image + " is not there";
+  if (trial.if_exists && !image_exists(trial)) return trial.image + " does not exist";
   if (trial.options.value(kImageGrows, false) && !grown(trial.image, 1)) return trial.image + " cannot grow";
   const int copies = num_copies(trial);
   const auto processors = static_cast<int>(usable_processor_ids().size());
   if (copies > processors)
-    return fmt::format("{} copies need as many processors, and there are {}", copies, processors);
+    return fmt::format("{} copies need as many processors; the machine has {}", copies, processors);
   if (const std::string absence = absence_of_ranks(trial, programs_.podm); !absence.empty()) return absence;
   if (is_of_peer(trial) && !peers_.of(trial).absence.empty()) return peers_.of(trial).absence;
   if (!trial.options.value(kSolve, false)) return "";

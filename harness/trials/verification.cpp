@@ -73,8 +73,8 @@ std::optional<VerifierReport> read_report(const std::string& path) {
 
 // Returns the angles of any claim that examines the cells' shapes. All such claims count alike.
 std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
-  for (const auto& [claim, told] : report.claims)
-    for (const HistogramReport& histogram : told.histograms.value_or(std::vector<HistogramReport>()))
+  for (const auto& [claim, result] : report.claims)
+    for (const HistogramReport& histogram : result.histograms.value_or(std::vector<HistogramReport>()))
       if (histogram.name == "dihedral_angle" && histogram.minimum && histogram.maximum)
         return DihedralRecord{*histogram.minimum, *histogram.maximum, histogram.counts};
   return {};
@@ -143,7 +143,7 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
     verification.fault = "not verified: " + outcome.describe();
     return verification;
   }
-  for (const auto& [claim, told] : report->claims) verification.verdicts[claim] = told.verdict;
+  for (const auto& [claim, result] : report->claims) verification.verdicts[claim] = result.verdict;
   verification.dihedral_deg = dihedral_angles_of(*report);
   verification.topology = topology_of(*report);
   verification.fault = fault_of(verification.verdicts, record);
@@ -158,7 +158,7 @@ ReplayAttempt replay_mesh(const Trial& trial, const std::string& image, const st
   if (reply.succeeded()) return {{Replay::End::kEqual, ""}};
   if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers)
     return {{Replay::End::kDiffers, ""}};
-  return {{Replay::End::kFailed, reply.why_not()}, reply.outcome.end == End::kInterrupted};
+  return {{Replay::End::kFailed, reply.failure_text()}, reply.outcome.end == End::kInterrupted};
 }
 
 }  // namespace podm::bench

@@ -15,7 +15,7 @@ def _lost(history, repository):
     tag = repository.last_tag()
     needed = by_id(repository.state(tag), history.shared_names) if tag else history.lives
     since = f"stood in {tag}" if tag else "once stood"
-    return [f"claim '{id_}' {since} and is neither there nor withdrawn nor superseded with a reason"
+    return [f"claim '{id_}' {since} and is neither present, withdrawn nor superseded with a reason"
             for id_ in sorted(needed) if not _is_accounted_for(history, history.lives[id_])]
 
 

@@ -8,14 +8,14 @@ TITLE = """# History of the claims
 <!--not measured page: statements and bounds of claims-->
 
 The name of a claim is its id for life. `scripts/claims_history` makes this page from the commits that touched
-`experiments/*.toml` and from what these files say of the claims that they supersede and withdraw;
-`scripts/claims_history --check`, a part of `make test`, fails when a claim is gone without a reason, when one asks for
-less without a reason, and when this page is not what the command makes. A name of which several experiments had one
-each at one time stands with its experiment, `experiment:name`. The verdicts on the claims that stand are those of
-`podm-bench verdicts`."""
+`experiments/*.toml` and from the claims that these files list as superseded and withdrawn.
+`scripts/claims_history --check`, a part of `make test`, fails if a claim is gone without a reason, if a bound is
+loosened without a reason, or if this page differs from the output of the command. A name that several experiments used
+at the same time is listed with its experiment, `experiment:name`. `podm-bench verdicts` prints the verdicts on the
+present claims."""
 GONE = """## Claims that were withdrawn, superseded, moved or loosened
 
-| claim | what became of it | what it said last, before | why |
+| claim | change | last statement, or statement before the change | reason |
 | --- | --- | --- | --- |"""
 CHANGES = """## Changes
 
@@ -40,7 +40,7 @@ def _fate(history, life):
         what = (f"superseded by `{successor.name}`" if successor else
                 _withdrawn_in_words(withdrawal) if withdrawal else "**gone**")
         reason = successor.reason if successor else withdrawal.reason if withdrawal else ""
-        return _line(f"`{life.id}`", what, _said(life.last()), reason)
+        return _line(f"`{life.id}`", what, _statement(life.last()), reason)
     before = life.changes[0].after
     parts = []
     if before.experiment != claim.experiment:
@@ -49,14 +49,14 @@ def _fate(history, life):
         before = pair[0]
         is_restored = not any(definitions.loosened(one, claim) for one in life.definitions())
         parts.append(f"loosened to {definitions.bound_in_words(pair[1])}" + (", restored" if is_restored else ""))
-    return _line(f"`{life.id}`", "; ".join(parts), _said(before), claim.reason) if parts else None
+    return _line(f"`{life.id}`", "; ".join(parts), _statement(before), claim.reason) if parts else None
 
 
 def _withdrawn_in_words(entry):
     return "withdrawn" + (f", superseded by `{entry.superseded_by}`" if entry.superseded_by else "")
 
 
-def _said(claim):
+def _statement(claim):
     bound = definitions.bound_in_words(claim)
     return claim.definition["statement"] + (f" ({claim.experiment}; {bound})" if bound else f" ({claim.experiment})")
 

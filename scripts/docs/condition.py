@@ -39,7 +39,7 @@ def parse_filter(text):
     for word in shlex.split(text):
         found = CONDITION.fullmatch(word)
         if not found:
-            raise DocsError(f"'{word}' is no condition: path=value, !=, >=, <=, > or <")
+            raise DocsError(f"'{word}' is not a condition: path=value, !=, >=, <=, > or <")
         conditions.append(found.groups())
     return Filter(conditions)
 

@@ -25,7 +25,7 @@ class Expression:
         try:
             self._tree = ast.parse(self.text, mode="eval").body
         except SyntaxError:
-            raise DocsError(f"'{self.text}' is no value: paths and arithmetic of them are") from None
+            raise DocsError(f"'{self.text}' is not a value: paths and arithmetic of paths are") from None
         self.roots = {node.id for node in ast.walk(self._tree) if isinstance(node, ast.Name)} - set(FUNCTIONS)
 
     def of(self, row):
@@ -47,13 +47,13 @@ class Expression:
                 return OPERATORS[type(op)](self._number(operand, row))
             case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
                 return FUNCTIONS[name](_entries(self._value(argument, row)))
-        raise DocsError(f"'{self.text}': '{ast.unparse(node)}' is no path, number, operator or function of "
+        raise DocsError(f"'{self.text}': '{ast.unparse(node)}' is not a path, number, operator or function of "
                         f"{', '.join(FUNCTIONS)}")
 
     def _number(self, node, row):
         value = self._value(node, row)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise Missing(f"'{ast.unparse(node)}' is {value!r}, no number")
+            raise Missing(f"'{ast.unparse(node)}' is {value!r}, not a number")
         return value
 
     def _child(self, parent, name):

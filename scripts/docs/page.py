@@ -94,7 +94,7 @@ class Page:
         name, sign, rest = words.partition("=")
         try:
             if not sign or not re.fullmatch(r"\w+", name.strip()):
-                raise DocsError(f"'{words}' is no NAME = FILES; FILTER")
+                raise DocsError(f"'{words}' is not NAME = FILES; FILTER")
             self.rows[name.strip()] = parse_rows(rest, self.rows)
         except DocsError as error:
             self.faults.append((place, str(error)))

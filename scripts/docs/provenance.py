@@ -63,11 +63,11 @@ class Provenance:
         if path is None:
             return None
         text = path.read_text()
-        told = dict(re.findall(r'<info name="(CPU\w+)" value="([^"]*)"', text))
-        if not set(IDENTITY) <= set(told):
-            raise DocsError(f"{path.relative_to(self._sources.root)}: tells no {', '.join(IDENTITY)}")
+        info = dict(re.findall(r'<info name="(CPU\w+)" value="([^"]*)"', text))
+        if not set(IDENTITY) <= set(info):
+            raise DocsError(f"{path.relative_to(self._sources.root)}: has no {', '.join(IDENTITY)}")
         caches = re.findall(r'<object type="(L\d)Cache"[^>]* cache_size="(\d+)"', text)
-        return (*(told[name] for name in IDENTITY), _text(dict(caches)))
+        return (*(info[name] for name in IDENTITY), _text(dict(caches)))
 
 
 def _text(caches):

@@ -54,16 +54,16 @@ def parse_query(text, known):
     """Parses a query. `known`: the rows that the page has named. Raises DocsError."""
     parts = [part.strip() for part in text.split(";")]
     if len(parts) not in (4, 5):
-        raise DocsError(f"'{text}' is no query: SOURCES; FILTER; VALUE; STATISTIC; FORMAT")
+        raise DocsError(f"'{text}' is not a query: SOURCES; FILTER; VALUE; STATISTIC; FORMAT")
     *rows, value, statistic, form = parts
     name, _, base = statistic.partition(" ")
     if name not in OF_VALUES and name not in OF_TWO and name != "only":
-        raise DocsError(f"'{name}' is no statistic: {', '.join([*OF_VALUES, 'only', *OF_TWO])}")
+        raise DocsError(f"'{name}' is not a statistic: {', '.join([*OF_VALUES, 'only', *OF_TWO])}")
     if bool(base) != (name in OF_TWO):
         raise DocsError(f"statistic '{name}' takes {'the filter of its base' if name in OF_TWO else 'no filter'}")
     found = FORMAT.fullmatch(form)
     if not found:
-        raise DocsError(f"'{form}' is no format: an optional scale, * or / and a number, and Python's format")
+        raise DocsError(f"'{form}' is not a format: an optional scale, * or / and a number, and Python's format")
     sign, number, spec = found.groups()
     scale = float(number or 1)
     return Query(parse_rows(" ; ".join(rows), known), Expression(value), name,
@@ -106,7 +106,7 @@ def formatted(value, query):
     try:
         return format(round(value) if query.format.endswith("d") else value, query.format)
     except ValueError:
-        raise DocsError(f"'{query.format}' is no format of a number") from None
+        raise DocsError(f"'{query.format}' is not a format of a number") from None
 
 
 def _statistic(query, rows, base):

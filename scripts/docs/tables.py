@@ -121,9 +121,9 @@ def ranks(sources, folder):
         "M cells per rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]], "ranks": table["ranks"],
         "M cells": [f"{value / 1e6:.2f}" for value in table["cells"]],
         "rounds": [f"{value:.0f}" for value in table["rounds"]],
-        "deferred in round 0, of the cells": [f"{100 * value:.1f} %" for value in table["deferred_share"]],
+        "share of cells deferred in round 0": [f"{100 * value:.1f} %" for value in table["deferred_share"]],
         "most cells of a rank over the mean": [f"{value:.3f}" for value in table["imbalance"]],
-        "cells over one machine's": [f"{value:.4f}" for value in table["cells_over_one_machine"]]}))
+        "cells over those of one machine": [f"{value:.4f}" for value in table["cells_over_one_machine"]]}))
 
 
 def simulated_speedups(sources, folder):

@@ -10,7 +10,7 @@ from .table2 import zero_hop_share
 
 EXPERIMENT = "simulated_ablation"
 UNCHANGED = ("as they are", 1.0)
-HOLDS, FAILS, NOT_PLAYED = "holds", "does not hold", "not played"
+HOLDS, FAILS, NOT_SIMULATED = "holds", "does not hold", "not simulated"
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ FINDINGS = (
 
 def ablation(frame):
     """One line per constant and factor, first the line with unchanged constants: each finding `holds`, `does not hold`
-    or was `not played`. Only rows of the newest program count; two models never share a program."""
+    or was `not simulated`. Only rows of the newest program count; two models never share a program."""
     rows = _rows(frame)
     if rows.empty:
         return pandas.DataFrame()
@@ -76,7 +76,7 @@ def _rows(frame):
 
 def _verdict(finding, rate, hops):
     if not set(finding.needs) <= set(rate):
-        return NOT_PLAYED
+        return NOT_SIMULATED
     return HOLDS if finding.holds(rate, hops) else FAILS
 
 
@@ -88,7 +88,7 @@ def readable(table):
     for constant, group in table.groupby("constant", sort=False):
         line = {"constant": constant.replace("_", " "), "rows": int(group["n"].sum())}
         for statement in (one.statement for one in FINDINGS):
-            usual = as_they_are[statement].iloc[0] if len(as_they_are) else NOT_PLAYED
+            usual = as_they_are[statement].iloc[0] if len(as_they_are) else NOT_SIMULATED
             line[statement] = _words(group.set_index("factor")[statement], usual)
         lines.append(line)
     return pandas.DataFrame(lines)
@@ -96,12 +96,12 @@ def readable(table):
 
 def _words(verdicts, usual):
     """`usual`: the verdict with unchanged constants."""
-    played = verdicts[verdicts != NOT_PLAYED]
-    if played.empty or usual == NOT_PLAYED:
-        return NOT_PLAYED
+    simulated = verdicts[verdicts != NOT_SIMULATED]
+    if simulated.empty or usual == NOT_SIMULATED:
+        return NOT_SIMULATED
     if set(verdicts.index) == {UNCHANGED[1]}:
         return usual
-    changed = ", ".join(_factor(factor) for factor in played.index[played != usual])
+    changed = ", ".join(_factor(factor) for factor in simulated.index[simulated != usual])
     if not changed:
         return "survives" if usual == HOLDS else usual
     return f"{'falls' if usual == HOLDS else HOLDS}: {changed}"

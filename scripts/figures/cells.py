@@ -57,7 +57,7 @@ def _judge_ratio(cell, ours, paper_ratio, our_base):
     if cell["cores"] == 1 and cell["algorithm"] == "podm":
         cell.update(verdict="reference", reason="ratios refer to PODM on one core")
     elif cell["column"] == "cells":
-        cell.update(verdict="reference", reason="rows are chosen by it: cells grow with the cores, as the paper's")
+        cell.update(verdict="reference", reason="rows are selected by it: cells grow with the cores, as in the paper")
     else:
         interval = _interval_of_ratio(cell, ours, ratio)
         least, most = ((1 + sign * RATIO_TOLERANCE) * paper_ratio for sign in (-1, 1))

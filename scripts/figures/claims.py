@@ -27,7 +27,7 @@ def claims(frame, series, hops):
 
 def _with_size(claim, series):
     """Adds the size to the claim; each size has its own verdict."""
-    size = f", {scaling.short(series.cells_per_core)} cells a core"
+    size = f", {scaling.short(series.cells_per_core)} cells per core"
     return {**claim, "claim": claim["claim"] + size, "statement": claim["statement"] + size}
 
 
@@ -72,8 +72,8 @@ def _crossover(frame, series, basis):
                      reason=f"which is ahead on {', '.join(map(str, open_on))} cores is not resolved")
         return claim
     if ahead is None:
-        return _decide(claim, False, [behind, None], f"PDR.PODM is not ahead on {behind} cores, the most there are")
-    reason = f"PDR.PODM is ahead from {ahead} cores on, " + (f"not on {behind}" if behind else "the fewest there are")
+        return _decide(claim, False, [behind, None], f"PDR.PODM is not ahead on {behind} cores, the most with rows")
+    reason = f"PDR.PODM is ahead from {ahead} cores on, " + (f"not on {behind}" if behind else "the fewest with rows")
     is_within = last <= behind and ahead <= first
     if ahead <= last or behind >= first:
         return _decide(claim, False, [behind, ahead], reason)
@@ -133,8 +133,8 @@ def _turns(frame, series, basis):
             bounds = {"least": ABOVE_ONE} if sign > 0 else {"most": 1 / ABOVE_ONE}
             word = resolution.together([resolution.verdict(step, interval, **bounds)
                                         for step, interval in zip(steps, intervals)])
-            told = ", ".join(f"{step:.2f}" for step in steps)
-            _conclude(claim, word, list(steps), f"from step to step times {told}", *intervals)
+            factors = ", ".join(f"{step:.2f}" for step in steps)
+            _conclude(claim, word, list(steps), f"from step to step times {factors}", *intervals)
         yield claim
 
 
@@ -244,14 +244,14 @@ def _latencies(frame):
     costs = table3.costs(frame)
     own, another = costs[~costs["is_another"]], costs[costs["is_another"]]
     within = _claim("latency within a node", "each level of memory costs more than the one before it: 4, 11, 40 and "
-                    "some 200 cycles", [4, 11, 40, 200], "measured")
+                    "about 200 cycles", [4, 11, 40, 200], "measured")
     if len(own) < 3 or own["cycles"].isna().any():
         within["reason"] = "no row measured two caches and the node's memory"
     else:
         steps = [_quotient(high, low, "cycles", "measured") for low, high in zip(own.iloc, own.iloc[1:].iloc)]
         _conclude_steps(within, steps, ABOVE_ONE, own["cycles"].tolist(),
                         ", ".join(f"{cycles:.3g}" for cycles in own["cycles"]) + " cycles")
-    beyond = _claim("latency beyond a node", "memory of another node costs more than that of the own: some 1500 "
+    beyond = _claim("latency beyond a node", "memory of another node costs more than that of the own: about 1500 "
                     "against 200 cycles", 7.5, "measured")
     if own.empty or another.empty or another["cycles"].isna().any() or own["cycles"].isna().iloc[-1]:
         beyond["reason"] = "no row measured memory levels" if own.empty else "one NUMA node"

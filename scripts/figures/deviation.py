@@ -64,13 +64,13 @@ def figure(series):
             axes.plot(found.index, found, color=style.COLOURS[algorithm], alpha=(place + 1) / len(shown),
                       label=one.kind(), **{"marker": style.MARKERS[algorithm], **style.LINES[one.key["basis"]]})
         most = 100 * DEVIATIONS[algorithm]
-        axes.axhspan(-most, most, color=style.GHOST, alpha=0.15, label="asked of the mean")
+        axes.axhspan(-most, most, color=style.PUBLISHED_GREY, alpha=0.15, label="bound on the mean")
         axes.axhline(0, color=style.INK, linewidth=0.8)
         axes.set(xlabel="cores", title=f"{style.NAMES[algorithm]}, {ROLES[algorithm]}",
-                 ylabel="speed-up over the paper's, less 1, %")
+                 ylabel="speed-up over the paper's, minus 1, %")
         axes.set_xticks(cores, [str(count) for count in cores], rotation=45)
     style.legend(panels[-1], **style.BESIDE)
-    style.finish(drawn, "What is left of the fit, and what nothing was fitted to. "
+    style.finish(drawn, "Residuals of the fit, and deviations of values that were not fitted. "
                         f"{style.caption_of(shown, has_paper=False)}")
     return drawn
 

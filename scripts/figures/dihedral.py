@@ -24,11 +24,11 @@ def figure(frame):
                        color=solvers.COLOURS[variant],
                        label=f"{variant}: {row['dihedral_deg.least']:.2f} to {row['dihedral_deg.largest']:.2f}")
         for bound in (solvers.SMALL_DEG, solvers.LARGE_DEG):
-            one.axvline(bound, color=style.GHOST, linestyle="--", linewidth=0.8)
+            one.axvline(bound, color=style.PUBLISHED_GREY, linestyle="--", linewidth=0.8)
         one.set(title=f"{image}, {rows[solvers.NONE]['cells'] / 1e6:.2f} million cells", yscale="log", xlim=(0, 180),
-                ylim=(0.5, None), xlabel="dihedral angle, degrees", ylabel="angles a degree, per million cells")
+                ylim=(0.5, None), xlabel="dihedral angle, degrees", ylabel="angles per degree and million cells")
         one.set_xticks(range(0, 181, 30))
         style.legend(one, loc="lower center")
-    style.finish(made, f"Counted by podm-verify, six angles a cell. Lines: {solvers.SMALL_DEG} and {solvers.LARGE_DEG} "
-                       "degrees, the bounds of both stages.")
+    style.finish(made, f"Counted by podm-verify, six angles per cell. Lines: {solvers.SMALL_DEG} and "
+                       f"{solvers.LARGE_DEG} degrees, the bounds of both stages.")
     return made

@@ -25,10 +25,10 @@ COLUMNS = ["basis", "kind", "cells_per_rank", "ranks", "n", "cells", "rounds", *
 
 def of_row(row):
     """Returns the derived values of a row on ranks; the parts are seconds of the mean rank. None for other rows."""
-    told = row.get("ranks")
-    if not told:
+    ranks = row.get("ranks")
+    if not ranks:
         return None
-    number, spent = told["number"], [rank["spent"] for rank in told["by_rank"]]
+    number, spent = ranks["number"], [rank["spent"] for rank in ranks["by_rank"]]
     is_measured, cells = row["basis"] == "measured", row["cells"]
 
     def mean(phases, *kinds):
@@ -41,11 +41,11 @@ def of_row(row):
         first = min(spent[0].get("initial", {}).get("computing_s", 0.0), made["initial"])
         made.update(initial=first, learn=made["initial"] - first,
                     **{kind: mean(REFINING[1:], kind) for kind in every[1:]})
-    rounds, asked = told["rounds"], row.get("asked", {}).get("target_elements")
+    rounds, asked = ranks["rounds"], row.get("asked", {}).get("target_elements")
     resolved = (row.get("resolved") or {}).get("cells")
     return {
         "number": number, "cells_per_rank": (asked or cells) / number, "rounds": len(rounds),
-        "deferred_share": rounds[0]["deferred"] / cells if rounds and cells else None, "imbalance": told["imbalance"],
+        "deferred_share": rounds[0]["deferred"] / cells if rounds and cells else None, "imbalance": ranks["imbalance"],
         "cells_over_one_machine": cells / resolved if resolved else None,
         "rank_bytes_per_cell": (row.get("process") or {}).get("bytes_per_cell_beyond_image") if is_measured else None,
         # In virtual time the seconds of the rank that ends last; in processor time those of the mean rank.
@@ -90,7 +90,7 @@ def _line(basis, per_rank, ranks, rows, base):
     parts = {part: 1e6 * _median(rows[f"on_ranks.part.{part}"] / cells_of_rank) for part in PARTS
              if f"on_ranks.part.{part}" in rows}
     kind = "measured processor seconds" if basis == "measured" else "simulated"
-    return {"basis": basis, "kind": f"{kind}, {scaling.short(per_rank)} cells a rank", "cells_per_rank": per_rank,
+    return {"basis": basis, "kind": f"{kind}, {scaling.short(per_rank)} cells per rank", "cells_per_rank": per_rank,
             "ranks": ranks, "n": len(rows), "cells": rows["cells"].median(),
             "rounds": rows["on_ranks.rounds"].max(), **{name: _median(rows[f"on_ranks.{name}"]) for name in OF_ROW},
             "refining_efficiency": rate(rows, "refining") / rate(base, "refining") if len(base) else math.nan,
@@ -108,13 +108,13 @@ def readable(table):
     shown["M cells"] = [f"{1e-6 * cells:.3g}" for cells in table["cells"]]
     shown["rounds"] = table["rounds"].astype(int)
     for name, title in (("refining_efficiency", "efficiency, refining"), ("efficiency", "efficiency, whole"),
-                        ("deferred_share", "deferred in round 0, of the cells"),
-                        ("cells_over_one_machine", "cells over one machine's")):
+                        ("deferred_share", "share of cells deferred in round 0"),
+                        ("cells_over_one_machine", "cells over those of one machine")):
         digits = 2 if name == "cells_over_one_machine" else 1
         shown[title] = ["" if pandas.isna(value) else f"{100 * value:.{digits}f} %" for value in table[name]]
     shown["imbalance"] = [f"{value:.3f}" for value in table["imbalance"]]
-    shown["bytes a cell of the largest rank"] = ["" if pandas.isna(value) else f"{value:.0f}"
-                                                 for value in table["rank_bytes_per_cell"]]
+    shown["bytes per cell of the largest rank"] = ["" if pandas.isna(value) else f"{value:.0f}"
+                                                   for value in table["rank_bytes_per_cell"]]
     for part, words in PARTS.items():
-        shown[f"{words}, us a cell"] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[part]]
+        shown[f"{words}, us per cell"] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[part]]
     return shown

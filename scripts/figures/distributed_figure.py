@@ -6,8 +6,8 @@ from . import scaling, style
 from .distributed import PARTS
 from .distributed_model import ASSUMPTIONS
 
-COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c", "#c9b458", style.GHOST, "#3d3d6b",
-                           "#6d9dc5"]))
+COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c", "#c9b458",
+                           style.PUBLISHED_GREY, "#3d3d6b", "#6d9dc5"]))
 
 
 # Drawn without a line, because these points were not simulated.
@@ -20,7 +20,7 @@ def figure(table, extrapolated):
     if not (table["ranks"] > 1).any():
         return None
     titles = {"simulated": "weak efficiency of refining, simulated",
-              "measured": "cells a processor second, measured over MPI"}
+              "measured": "cells per processor second, measured over MPI"}
     bases = [basis for basis in titles if (table["basis"] == basis).any()]
     has_parts = "simulated" in bases
     drawn, panels = style.new_figure(columns=len(bases) + has_parts, width=5.3 * (len(bases) + has_parts), height=4.4)
@@ -45,7 +45,7 @@ def _efficiencies(axes, table, line):
         if (group["ranks"] > 1).any():
             axes.plot(group["ranks"], 100 * group["refining_efficiency"], marker="osD^v<>"[number % 7],
                       color=list(COLOURS.values())[number % len(COLOURS)],
-                      label=f"{scaling.short(per_rank)} cells a rank", **line)
+                      label=f"{scaling.short(per_rank)} cells per rank", **line)
 
 
 def _extrapolations(axes, table):
@@ -54,8 +54,9 @@ def _extrapolations(axes, table):
         bars = numpy.nan_to_num([middle - 100 * group["refining_efficiency_low"],
                                  100 * group["refining_efficiency_high"] - middle]).clip(0)
         axes.errorbar(group["ranks"], middle, yerr=bars, capsize=3, color=style.INK,
-                      label=f"extrapolated, {scaling.short(group['cells_per_rank'].iloc[0])} cells a node of {threads} "
-                            f"thread{'s' * (threads > 1)}", **{**EXTRAPOLATED, "marker": "D" if threads == 1 else "s"})
+                      label=f"extrapolated, {scaling.short(group['cells_per_rank'].iloc[0])} cells per node of "
+                            f"{threads} thread{'s' * (threads > 1)}",
+                      **{**EXTRAPOLATED, "marker": "D" if threads == 1 else "s"})
 
 
 def _parts(axes, table, extrapolated):
@@ -78,7 +79,7 @@ def _parts(axes, table, extrapolated):
     below.spines["bottom"].set_visible(False)
     below.set_xlabel("ranks, and cells of each (hatched: extrapolated)")
     axes.set(title="where the time of the mean rank goes",
-             ylabel="simulated microseconds a cell of a rank")
+             ylabel="simulated microseconds per cell of a rank")
     handles, labels = axes.get_legend_handles_labels()
     style.legend(axes, handles=handles[::-1], labels=labels[::-1], **style.BESIDE)
 
@@ -86,12 +87,12 @@ def _parts(axes, table, extrapolated):
 def caption(table, extrapolated):
     parts = []
     if (table["basis"] == "simulated").any():
-        parts.append("Simulated: ranks of one thread in one process, one after the other, on the clock of their "
-                     "processor time and of a stated network; the weak efficiency is cells a second and rank over "
-                     "those of one rank of as many cells")
+        parts.append("Simulated: ranks of one thread in one process, one after the other, timed by their "
+                     "processor time and a stated network; the weak efficiency is cells per second and rank over "
+                     "those of one rank with the same number of cells")
     if (table["basis"] == "measured").any():
-        parts.append("Measured: ranks over MPI on one machine with fewer processors; cells a processor second outside "
-                     "of collectives, as waiting there means nothing")
+        parts.append("Measured: ranks over MPI on one machine with fewer processors; cells per processor second "
+                     "outside of collectives, because waiting there means nothing")
     if len(extrapolated):
         parts.append(ASSUMPTIONS)
     return ". ".join(parts) + "."

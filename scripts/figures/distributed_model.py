@@ -31,9 +31,9 @@ COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refinin
            "refining_efficiency_low", "refining_efficiency_high", "efficiency", "efficiency_low", "efficiency_high",
            "worst_miss", *PARTS]
 ASSUMPTIONS = (
-    "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
-    "the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the range "
-    "when any one of the sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
+    "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of parts that grow "
+    "with the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the "
+    "range when any one of the sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
     "the ratio simulated, is made by all threads of the first node while the others wait, and learned by one of each; "
     "that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and leave updates "
     "to one; that nodes are as fast as the processor that simulated them, all the same, and the network as stated, "
@@ -109,12 +109,12 @@ def readable(table):
         return f"{100 * line[name]:.0f} % [{100 * line[name + '_low']:.0f}, {100 * line[name + '_high']:.0f}]"
 
     shown = table[["ranks", "threads", "sizes"]].rename(columns={"ranks": "nodes", "threads": "threads of a node",
-                                                                 "sizes": "from cells a rank"}).copy()
-    shown.insert(2, "M cells a node", [f"{1e-6 * cells:.3g}" for cells in table["cells_per_rank"]])
+                                                                 "sizes": "from cells per rank"}).copy()
+    shown.insert(2, "M cells per node", [f"{1e-6 * cells:.3g}" for cells in table["cells_per_rank"]])
     lines = table.to_dict("records")
     shown["efficiency, refining"] = [share(line, "refining_efficiency") for line in lines]
     shown["efficiency, whole"] = [share(line, "efficiency") for line in lines]
     shown["worst miss of a size left out"] = [f"{100 * one:.0f} %" for one in table["worst_miss"]]
     for part, words in PARTS.items():
-        shown[f"{words}, us a cell"] = [f"{value:.3g}" for value in table[part]]
+        shown[f"{words}, us per cell"] = [f"{value:.3g}" for value in table[part]]
     return shown

@@ -47,10 +47,10 @@ def table(found):
 def counts(found):
     """Returns "12 hold, 3 do not, 1 not resolved, 5 cannot be decided here"; empty without verdicts."""
     verdicts = list(table(found)["verdict"])
-    told = [f"{verdicts.count(word)} {WORDS[word]}" for word in ("holds", "does_not_hold", "not_resolved",
-                                                                 "cannot_be_decided")]
+    words = [f"{verdicts.count(word)} {WORDS[word]}" for word in ("holds", "does_not_hold", "not_resolved",
+                                                                  "cannot_be_decided")]
     withdrawn = verdicts.count(WITHDRAWN)
-    return ", ".join(told) + (f"; {withdrawn} withdrawn or superseded" if withdrawn else "") if verdicts else ""
+    return ", ".join(words) + (f"; {withdrawn} withdrawn or superseded" if withdrawn else "") if verdicts else ""
 
 
 def _interval(claim):

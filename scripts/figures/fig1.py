@@ -27,7 +27,7 @@ def fig1(report):
         edges = numpy.linspace(histogram["low"], histogram["high"], len(counts) + 1)
         one.stairs(100 * counts / max(counts.sum(), 1), edges, fill=True, color=style.COLOURS["podm"], alpha=0.85)
         if bound is not None:
-            one.axvline(bound, color=style.GHOST, linestyle="--")
+            one.axvline(bound, color=style.PUBLISHED_GREY, linestyle="--")
         one.set(title=f"{title}\n{histogram['minimum']:.4g} to {histogram['maximum']:.4g}", xlabel=unit,
                 ylabel="% of all")
     mesh = report["mesh"]
@@ -50,7 +50,7 @@ def fig1_extremes(frame):
         (axes[1], "quality.min_facet_angle_deg", "smallest boundary angle, degrees", ANGLE_DEG),
     ):
         one.plot(rows["cells"] / 1e6, rows[column], "o", color=style.COLOURS["podm"], alpha=0.75)
-        one.axhline(bound, color=style.GHOST, linestyle="--")
+        one.axhline(bound, color=style.PUBLISHED_GREY, linestyle="--")
         one.set(title=title, xlabel="million cells", xscale="log")
         one.margins(y=0.4)
     style.finish(figure, f"n = {len(rows)} verified meshes, every one shown. Lines: guarantees of the method.")

@@ -53,7 +53,7 @@ def _draw_leaves(axes, leaves, zones, height):
         axes.add_patch(Rectangle((i, j), side, side, facecolor=colour, alpha=0.85, linewidth=0))
         if len(colours) > 1:
             axes.add_patch(Rectangle((i, j), side, side, fill=False, hatch="//", edgecolor=colours[1], linewidth=0))
-        axes.add_patch(Rectangle((i, j), side, side, fill=False, edgecolor=style.GHOST, linewidth=0.8))
+        axes.add_patch(Rectangle((i, j), side, side, fill=False, edgecolor=style.PUBLISHED_GREY, linewidth=0.8))
 
 
 def _frame(schedule):
@@ -73,7 +73,7 @@ def _caption(turns, zones, height, num_cut):
     begin, end = max(1e3 * turn["begin_s"] for turn in turns), min(1e3 * turn["end_s"] for turn in turns)
     inner = [{leaf for leaf, zone in one.items() if zone != SECOND} for one in zones]
     common = len(inner[0] & inner[1])
-    return (f"Both at work from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have "
+    return (f"Both active from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have "
             f"{common or 'no'} leaf in common; hatched: also in the second ring of the other. Cut at "
             f"k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{height:g} of the leaf grid through {num_cut:,} cells of the final "
             "mesh.")

@@ -13,7 +13,7 @@ def fig4a(series):
     shown = scaling.shown_of(series)
     cores = scaling.core_counts([published, *(one.table for one in shown)])
     for axes, column, scale in ((speedup, "speedup", 1), (efficiency, "efficiency", 100)):
-        style.ghost(axes, published, column, scale)
+        style.plot_published(axes, published, column, scale)
         for one in shown:
             style.plot_series(axes, one, column, scale)
         style.cores_axis(axes, cores)

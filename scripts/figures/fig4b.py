@@ -21,7 +21,7 @@ def fig4b(series):
         _bars(axes[1], simulated, scaling.core_counts([simulated.table]))
         axes[1].set(ylabel="simulated seconds of equation 1", title=f"time, {simulated.kind()}")
         axes[3].set_axis_off()
-    style.ghost(rate, published, "rate", 1e-6)
+    style.plot_published(rate, published, "rate", 1e-6)
     for one in shown:
         style.plot_series(rate, one, "rate", 1e-6)
     style.cores_axis(rate, scaling.core_counts([published, *(one.table for one in shown)]))
@@ -42,8 +42,8 @@ def _bars(axes, series, cores, published=None):
     handles = [Patch(color=colour, label=style.PHASE_NAMES.get(phase, phase))
                for phase, colour in style.PHASE_COLOURS.items() if series and (series.table[phase] > 0).any()]
     if published is not None:
-        _ghost_bars(axes, published, cores, _sides(series))
-        handles.append(Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total"))
+        _published_bars(axes, published, cores, _sides(series))
+        handles.append(Patch(facecolor="none", edgecolor=style.PUBLISHED_GREY, linestyle="--", label="paper, total"))
     if series:
         _stack(axes, series, cores)
     axes.set_ylim(0, 1.25 * axes.dataLim.y1)
@@ -64,10 +64,10 @@ def _place(algorithm, sides):
     return (sides.index(algorithm) - (len(sides) - 1) / 2) * width, width
 
 
-def _ghost_bars(axes, published, cores, sides):
+def _published_bars(axes, published, cores, sides):
     for (algorithm, count), row in published.iterrows():
         middle, width = _place(algorithm, sides)
-        axes.bar(cores.index(count) + middle, row["seconds"], width, facecolor="none", edgecolor=style.GHOST,
+        axes.bar(cores.index(count) + middle, row["seconds"], width, facecolor="none", edgecolor=style.PUBLISHED_GREY,
                  linestyle="--", linewidth=0.9)
 
 

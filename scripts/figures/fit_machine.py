@@ -59,11 +59,12 @@ def runs_of(frame):
         raise RecordError(f"no verified simulated row of podm on one core{_doubts(frame)}")
     rows = scaling.rows_of(frame, series)
     rows = rows[rows["algorithm"] == "podm"]
-    untold = [name for name in NEEDED if name not in rows or rows[name].isna().all()]
-    if untold:
-        raise RecordError(f"rows of {series.label()} do not tell {', '.join(untold)}: a newer mesher's do")
-    told = rows.dropna(subset=NEEDED)
-    runs = {cores: _run(row) for cores, row in told.set_index(told["cores"]).sort_index(kind="stable").iterrows()
+    missing_columns = [name for name in NEEDED if name not in rows or rows[name].isna().all()]
+    if missing_columns:
+        raise RecordError(f"rows of {series.label()} do not record {', '.join(missing_columns)}: "
+                          "rows of a newer mesher do")
+    rows = rows.dropna(subset=NEEDED)
+    runs = {cores: _run(row) for cores, row in rows.set_index(rows["cores"]).sort_index(kind="stable").iterrows()
             if cores in _published()}
     if 1 not in runs or len(runs) - 2 < len(CONSTANTS):
         raise RecordError(f"{len(CONSTANTS)} constants need rows of podm on one core and {len(CONSTANTS) + 1} other "
@@ -233,14 +234,14 @@ def main(arguments=None):
     print(f"fit_machine: {series.label()}" + (f"; no row on {_words(missing(runs))}" if missing(runs) else ""),
           file=sys.stderr)
     constants, mean = fit(runs, machine)
-    told = {"schema": "podm-machine-fit/1", "machine": machine.get("name", asked.machine.stem),
-            "records": [str(path) for path in asked.records],
-            "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
-            "deviations": deviations(runs, machine, constants)}
+    result = {"schema": "podm-machine-fit/1", "machine": machine.get("name", asked.machine.stem),
+              "records": [str(path) for path in asked.records],
+              "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
+              "deviations": deviations(runs, machine, constants)}
     if asked.leave_one_out:
-        told["leaving_one_out"] = leaving_one_out(runs, machine)
+        result["leaving_one_out"] = leaving_one_out(runs, machine)
     asked.output.mkdir(parents=True, exist_ok=True)
-    (asked.output / "machine_fit.json").write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
+    (asked.output / "machine_fit.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
     sensitivity_figure(runs, machine, constants).savefig(asked.output / "machine_fit.png")
     print(f"mean absolute deviation {100 * mean:.1f} %: " + ", ".join(f"{name} = {value:.3g}"
                                                                      for name, value in constants.items()))

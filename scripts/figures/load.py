@@ -13,7 +13,7 @@ SCHEMA = 4
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
 UNDESCRIBED = "no machine described"
-ALTERED = "a constant of its model is another"
+ALTERED = "a constant of its model is changed"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases that equation 1 does not count: improving angles, measuring and writing the mesh, searching the radius for a

@@ -11,7 +11,7 @@ CAUSES = {"compute": "computing", "memory_remote": "memory of other nodes", "net
           "contention": "waiting after conflicts", "rollback": "rolling back", "begging": "begging, waiting for leaves",
           "outside": "outside refinement, or idle"}
 COLOURS = dict(zip(CAUSES, ["#8fb996", "#e8a33d", "#d1495b", "#c9b458", "#7a6c9d", "#8f575c", "#3d3d6b", "#6d9dc5",
-                            style.GHOST]))
+                            style.PUBLISHED_GREY]))
 OTHER_COLOUR = "#e6d5e8"
 COLUMNS = ["basis", "kind", "algorithm", "cores", "n"]
 
@@ -20,17 +20,17 @@ def lost(frame, series):
     """One line per algorithm and number of cores of the simulated series to show: median worker microseconds per cell
     by cause. `outside`: the time of all cores in equation 1 that no cause has. Empty if rows have no causes."""
     shown = scaling.first_of(series, "simulated")
-    told = sorted((name.removeprefix(PREFIX) for name in frame if name.startswith(PREFIX)),
-                  key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
-    if shown is None or not told:
+    causes = sorted((name.removeprefix(PREFIX) for name in frame if name.startswith(PREFIX)),
+                    key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
+    if shown is None or not causes:
         return pandas.DataFrame(columns=COLUMNS)
-    rows = scaling.rows_of(frame, shown).dropna(subset=PREFIX + told[0])
+    rows = scaling.rows_of(frame, shown).dropna(subset=PREFIX + causes[0])
     lines = []
     for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
-        by_cause = group[[PREFIX + cause for cause in told]].div(group["cells"], axis=0)
+        by_cause = group[[PREFIX + cause for cause in causes]].div(group["cells"], axis=0)
         whole = group["seconds"] * cores / group["cells"]
         outside = (whole - by_cause.sum(axis=1)).clip(lower=0)
-        seconds = {**dict(zip(told, by_cause.median())), "outside": outside.median()}  # per cell
+        seconds = {**dict(zip(causes, by_cause.median())), "outside": outside.median()}  # per cell
         lines.append({"basis": "simulated", "kind": shown.kind(), "algorithm": algorithm, "cores": cores,
                       "n": len(group), **{cause: 1e6 * one for cause, one in seconds.items()}})
     return pandas.DataFrame(lines)
@@ -66,7 +66,8 @@ def figure(frame, series):
             bottoms = bottoms + heights
         axes.set_xticks(range(len(cores)), [str(count) for count in cores])
         axes.set_xlim(-0.6, len(cores) - 0.4)
-        axes.set(xlabel="simulated cores", title=style.NAMES[algorithm], ylabel="simulated worker microseconds a cell")
+        axes.set(xlabel="simulated cores", ylabel="simulated worker microseconds per cell",
+                 title=style.NAMES[algorithm])
     top = 1.05 * max(axes.dataLim.y1 for axes in panels)
     for axes in panels:
         axes.set_ylim(0, top)

@@ -38,13 +38,13 @@ def remarks(frame):
         return []
     measured = frame[frame["basis"] == "measured"]
     disturbed, moved = measured[measured["disturbed"]], int(measured["moved"].sum())
-    said = []
+    remarks = []
     if len(disturbed):
         busy = disturbed["environment.busy_elsewhere"].astype(float).mean()
         processors = int(disturbed["environment.usable_processors"].iloc[-1])
-        said.append(f"Other work kept {busy:.1f} of {processors} processors busy during {len(disturbed)} of "
-                    f"{len(measured)} runs: measured claims are not resolved.")
+        remarks.append(f"Other work kept {busy:.1f} of {processors} processors busy during {len(disturbed)} of "
+                       f"{len(measured)} runs: measured claims are not resolved.")
     if moved:
-        said.append(f"The machine's speed moved during the rounds of {moved} of {len(measured)} runs: their times "
-                    "do not count.")
-    return said
+        remarks.append(f"The machine's speed moved during the rounds of {moved} of {len(measured)} runs: their times "
+                       "do not count.")
+    return remarks

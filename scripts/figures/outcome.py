@@ -88,10 +88,10 @@ def _figures(frame, series, distributed_tables, report, schedule, mesh):
            "fig2b": "no two leaves of different nodes were active at one time" if schedule and mesh
            else "needs --schedule and --mesh of a run of pdr or pdr-podm",
            "deviation": "no verified simulated rows of weak scaling on more than one core",
-           "lost": "no simulated rows of weak scaling tell what their workers lost (virtual.worker_s)",
+           "lost": "no simulated rows of weak scaling record the losses of their workers (virtual.worker_s)",
            "distributed": "no verified rows on more than one rank (distributed_weak.toml)",
            "dihedral": "no verified rows without and with a stage against slivers (solvers.toml)",
-           "solvers": "no rows of meshes that a solver was handed (solvers.toml)"}
+           "solvers": "no rows of meshes that were given to a solver (solvers.toml)"}
     missing = {name: why[name] for name, figure in drawn.items() if figure is None}
     return {name: figure for name, figure in drawn.items() if figure is not None}, missing
 

@@ -56,7 +56,7 @@ def figure(query, ours):
     """Returns the figure's text; None if no row has its values."""
     name, *arguments = query.split()
     if name not in FIGURES:
-        raise QueryError(f"no figure is called {name!r}; there are {', '.join(FIGURES)}")
+        raise QueryError(f"no figure is called {name!r}; known figures: {', '.join(FIGURES)}")
     try:
         inspect.signature(FIGURES[name]).bind(ours, *arguments)
     except TypeError as error:
@@ -196,7 +196,7 @@ def initial_cores(ours):
     cores = int(rows["cores"].max())
     values, counts = (", ".join(map(form.format, numbers)) for form, numbers in (("{:.2f}", rates),
                                                                                ("{:.0f}", rates.index)))
-    return f"{values} M a second{in_brackets(rows['cells'].median() / cores)} with {counts} of {cores} cores for it"
+    return f"{values} M per second{in_brackets(rows['cells'].median() / cores)} with {counts} of {cores} cores for it"
 
 
 def _proved(rows, claim):
@@ -224,7 +224,7 @@ def shapes(ours):
 
 def proofs(ours, claim):
     passed, asked = _proved(ours.of("quality"), claim)
-    return f"{claim} proved of {passed} of {asked} that were asked for it" if asked else None
+    return f"{claim} proved of {passed} of {asked} that were checked" if asked else None
 
 
 def topology(ours):
@@ -258,7 +258,7 @@ def one_core(ours, algorithm):
         return None
     rows = rows[rows["cells"] >= 0.9 * rows["cells"].max()]
     rate = (rows["cells"] / rows["seconds"]).median() / 1e6
-    return f"{rate:.2f} M a second{in_brackets(rows['cells'].median())}"
+    return f"{rate:.2f} M per second{in_brackets(rows['cells'].median())}"
 
 
 def size(ours, experiment, cores=None):

@@ -48,7 +48,7 @@ def peers(frame):
 def readable(table):
     shown = table[["setting", "image", "cores", "mesher", "version", "n"]].copy()
     shown["M cells"] = [f"{cells / 1e6:.2f}" for cells in table["cells"]]
-    shown["facets"] = [f"{facets:.0f}" if facets == facets else "not told" for facets in table["facets"]]
+    shown["facets"] = [f"{facets:.0f}" if facets == facets else "not recorded" for facets in table["facets"]]
     shown["bounds met"] = [_bounds_met(line) for line in table.to_dict("records")]
     for name, title in (("whole_rate", "whole, M cells/s"), ("refining_rate", "refining, M cells/s"),
                         ("volume_rate", "from the surface, M cells/s")):
@@ -138,10 +138,10 @@ def _ratio(name, rate_of, own, others):
 
 def version_of(row):
     """Returns "CGAL 5.5.1" from a mesher's full version text."""
-    told = row.get("programs.peer.version")
-    told = told if isinstance(told, str) else row.get("programs.podm.version", "")
-    found = re.match(r"\S+ [\d.]*\d", told)
-    return found.group() if found else told
+    version = row.get("programs.peer.version")
+    version = version if isinstance(version, str) else row.get("programs.podm.version", "")
+    found = re.match(r"\S+ [\d.]*\d", version)
+    return found.group() if found else version
 
 
 def _promises(rows):

@@ -41,13 +41,13 @@ class Series:
         """Returns a description of the trial, the image and the machine."""
         key = self.key
         image = "an image that grows with the cores" if self.grows else key["image"]
-        size = f"{short(self.cells_per_core)} cells a core"
+        size = f"{short(self.cells_per_core)} cells per core"
         return ", ".join(part for part in (key["experiment"], key["setting"], image, size, key["machine"]) if part)
 
     def kind(self):
         """Returns the description in legends and tables. The basis is the first word."""
         basis = self.key["basis"]
-        size = f", {short(self.cells_per_core)} cells a core" if basis == "simulated" else ""
+        size = f", {short(self.cells_per_core)} cells per core" if basis == "simulated" else ""
         return basis + size + (", image grows" if self.grows else "")
 
 

@@ -10,7 +10,7 @@ OVERHEADS = ("contention", "begging", "rollback")
 TITLES = {
     "n": "runs", "cells": "M cells", "seconds": "simulated seconds", "rate": "M cells per simulated second",
     **{name: f"simulated {name}, worker seconds" for name in OVERHEADS}, "zero_hops": "simulated 0 hops",
-    "wall_s": "wall time of playing it, s"}
+    "wall_s": "wall time of the simulation, s"}
 SCALES = {"cells": 1e-6, "rate": 1e-6}
 
 

@@ -6,13 +6,13 @@ from . import paper, scaling, style
 from .deviation import ROLES
 from .table1 import with_bounds
 
-NOT_PLAYED = "not played"
+NOT_SIMULATED = "not simulated"
 # Causes of worker time that the constants of the network and of remote memory decide.
 FITTED_CAUSES = ("memory_remote", "network_queue")
 BLADE = 16  # cores that share a memory on the paper's machine
-NOTE = (f"Each size is over PODM on one core of as many cells. Brackets: over seeds, by order statistics; of five the "
-        f"least and the greatest, which hold the median with 94 %. The paper's {scaling.short(3e6)} cells a core were "
-        f"{NOT_PLAYED}, and no value here is continued to them.")
+NOTE = ("Each size is relative to PODM on one core with the same number of cells per core. Brackets: interval of "
+        "order statistics over seeds; of five seeds the least and the greatest, which hold the median with 94 %. The "
+        f"paper's {scaling.short(3e6)} cells per core were {NOT_SIMULATED}, and no value here is extrapolated to them.")
 
 
 def speedups(series):
@@ -23,14 +23,14 @@ def speedups(series):
     for cores in (count for count in scaling.core_counts([one.table for one in sizes]) if count > 1):
         line = {"cores": cores}
         for algorithm in style.NAMES:
-            played = [one for one in sizes if _plays(one, algorithm)]
-            if played:
-                line.update(_of_algorithm(algorithm, cores, played, published))
+            simulated = [one for one in sizes if _has_rows(one, algorithm)]
+            if simulated:
+                line.update(_of_algorithm(algorithm, cores, simulated, published))
         lines.append(line)
     return pandas.DataFrame(lines)
 
 
-def _plays(series, algorithm):
+def _has_rows(series, algorithm):
     """True if the series has rows of the algorithm on more than one core."""
     return any(name == algorithm and cores > 1 for name, cores in series.table.index)
 
@@ -45,14 +45,14 @@ def _of_algorithm(algorithm, cores, sizes, published):
         line[f"{name}: paper"] = f"{published[algorithm, cores]:.1f}" if (algorithm, cores) in published else ""
         name += f", {ROLES[algorithm]}"
     for one in sizes:
-        text = NOT_PLAYED
+        text = NOT_SIMULATED
         if (algorithm, cores) in one.table.index:
             row = one.table.loc[algorithm, cores]
             found.append(row["speedup"])
             text = with_bounds(row["speedup"], row["speedup_low"], row["speedup_high"], 1)
         line[f"{name}: {scaling.short(one.cells_per_core)}"] = text
     if len(sizes) > 1:
-        line[f"{name}: most over least"] = f"{max(found) / min(found):.2f}" if len(found) > 1 else ""
+        line[f"{name}: greatest over least"] = f"{max(found) / min(found):.2f}" if len(found) > 1 else ""
     return line
 
 
@@ -64,9 +64,9 @@ def depends_on_size(series, cores=256):
         return ""
     values, sizes = (" and ".join([", ".join(some[:-1]), some[-1]])
                      for some in ([f"{one:.0f}" for one in found.values()], list(found)))
-    return (f"Simulated, PDR.PODM's column is not fitted and depends on the cells a core: {values} times PODM on one "
-            f"core on {cores} cores with {sizes} cells a core. The paper's {scaling.short(3e6)} a core were "
-            f"{NOT_PLAYED}.")
+    return (f"Simulated, PDR.PODM's column is not fitted and depends on the cells per core: {values} times PODM on one "
+            f"core on {cores} cores with {sizes} cells per core. The paper's {scaling.short(3e6)} per core were "
+            f"{NOT_SIMULATED}.")
 
 
 def fitted_shares(frame, series):
@@ -91,6 +91,6 @@ def readable_shares(table):
     words = dict(zip(FITTED_CAUSES, ("memory of other blades", "queueing in the network")))
     return pandas.DataFrame({
         "algorithm": [style.NAMES[name] for name in table["algorithm"]],
-        "cells a core": [scaling.short(size) for size in table["cells_per_core"]], "rows": table["n"],
+        "cells per core": [scaling.short(size) for size in table["cells_per_core"]], "rows": table["n"],
         **{f"{words[cause]}, at most, % of worker time": [f"{100 * share:.2f}" for share in table[cause]]
            for cause in FITTED_CAUSES}})

@@ -80,7 +80,7 @@ def figure(frame):
             one.set(title=f"{image}: {name}", ylabel="iterations")
     style.legend(grid[0, -1], **style.BESIDE)
     style.finish(made, "Conjugate gradients until the residual is 1e-8 of the first, P1 elements, 0 on the outer "
-                       "boundary; beside each other meshes of about as many cells.")
+                       "boundary; meshes beside each other have about the same number of cells.")
     return made
 
 

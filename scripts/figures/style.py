@@ -4,7 +4,7 @@ from matplotlib.figure import Figure
 
 # Colour of text, axes and outlines. The report replaces it by the page's text colour.
 INK = "#1f2430"
-GHOST = "#8c8c8c"
+PUBLISHED_GREY = "#8c8c8c"
 # The paper's two algorithms, then further algorithms.
 NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM", "podm-home": "PODM at home"}
 COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b", "podm-home": "#3d8b5f"}
@@ -39,7 +39,7 @@ def dress(axes):
     for spine in axes.spines.values():
         spine.set_color(INK)
     axes.tick_params(which="both", colors=INK, labelsize=9)
-    axes.grid(True, color=GHOST, alpha=0.25, linewidth=0.6)
+    axes.grid(True, color=PUBLISHED_GREY, alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
 
 
@@ -58,10 +58,10 @@ def by_algorithm(table):
     return [(name, table.loc[[name]]) for name in NAMES if name in table.index]
 
 
-def ghost(axes, table, column, scale=1.0):
+def plot_published(axes, table, column, scale=1.0):
     """Draws the paper's series grey and dashed, behind everything else."""
     for algorithm, part in by_algorithm(table):
-        axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--",
+        axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=PUBLISHED_GREY, linestyle="--",
                   linewidth=1.2, marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
 
 
@@ -108,5 +108,5 @@ def caption_of(series, has_paper=True):
         return f"{text}.{beyond}"
     if any((one.table["n"] > 1).any() for one in series):
         text += (". Medians; bars: interval of order statistics over rounds or seeds, which holds the median with 95 % "
-                 "from six on")
+                 "from six values on")
     return f"{text}. Grey, dashed: the paper, Blacklight.{beyond}"

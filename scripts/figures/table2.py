@@ -46,8 +46,8 @@ def readable(table):
 def why_no_hops(frame):
     """Returns the text that rows have in place of counts, or that there is no row."""
     rows = scaling.headline_rows(frame)
-    said = [] if rows.empty or "hops" not in rows else [hops for hops in rows["hops"] if isinstance(hops, str)]
-    return said[-1] if said else "no verified row counts hops"
+    reasons = [] if rows.empty or "hops" not in rows else [hops for hops in rows["hops"] if isinstance(hops, str)]
+    return reasons[-1] if reasons else "no verified row counts hops"
 
 
 def zero_hop_share(counts):
@@ -67,7 +67,7 @@ def _blocks_of(rows):
     size = scaling.short((rows["cells"] / rows["cores"]).median())
     for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
         group = scaling.of_one_size(group)
-        kind = f"simulated, {size} cells a core" if _grows(rows) else "simulated, one mesh on any number of cores"
+        kind = f"simulated, {size} cells per core" if _grows(rows) else "simulated, one mesh on any number of cores"
         yield _block(group).assign(algorithm=algorithm, cores=cores,
                                    kind=kind if group["basis"].iloc[0] == "simulated" else group["basis"].iloc[0])
 

@@ -31,7 +31,7 @@ def main(arguments=None):
     parser.add_argument("machine", type=Path, metavar="MACHINE.toml", help="such as experiments/machines/template.toml")
     parser.add_argument("--image", default="phantom:abdomen@64", help="label image or phantom (default: %(default)s)")
     parser.add_argument("--cells-per-core", type=int, default=10_000, metavar="N",
-                        help="from 1000; the more, the surer and the slower (default: %(default)s)")
+                        help="1000 or more; larger numbers are more reliable and slower (default: %(default)s)")
     parser.add_argument("-o", "--output", type=Path, metavar="FOLDER",
                         help="for rows and picture (default: results/runs/whatif/NAME of the machine)")
     parser.add_argument("--bench", type=Path, default=ROOT / "build" / "bin" / "podm-bench",
@@ -39,7 +39,7 @@ def main(arguments=None):
     arguments = parser.parse_args(arguments)
     try:
         if arguments.cells_per_core < 1000:
-            raise MachineError("--cells-per-core must be 1000 or more: fewer are no mesh to share")
+            raise MachineError("--cells-per-core must be 1000 or more: a smaller mesh cannot be shared")
         return answer(arguments)
     except (MachineError, RecordError) as error:
         print(f"whatif: {error}", file=sys.stderr)
@@ -125,7 +125,7 @@ def run_trials(bench, experiment, folder):
     except OSError as error:
         raise MachineError(f"{bench}: {error.strerror}; `make build` builds it") from None
     if done.returncode:
-        raise MachineError(f"podm-bench ended with {done.returncode}; what it said stands above")
+        raise MachineError(f"podm-bench ended with {done.returncode}; its messages are above")
 
 
 def _of_size(series, cells_per_core):
@@ -155,36 +155,36 @@ def fastest(table):
 
 def advice(series, name):
     """Returns the fastest algorithm by range of cores, the rates on the most cores, and missing runs."""
-    where = f"{name}, {scaling.short(series.cells_per_core)} cells a core, {series.key['image']}, simulated"
+    where = f"{name}, {scaling.short(series.cells_per_core)} cells per core, {series.key['image']}, simulated"
     counts = scaling.core_counts([series.table])
-    lines = [f"{where}: {_told(fastest(series.table), counts[-1])}."]
+    lines = [f"{where}: {_ranges_in_words(fastest(series.table), counts[-1])}."]
     on_most = series.table.xs(counts[-1], level="cores").sort_values("rate", ascending=False)
     made = [f"{algorithm} {line['rate'] / 1e6:.3g} ({100 * line['efficiency']:.0f} %)"
             for algorithm, line in on_most.iterrows()]
-    lines.append(f"Million cells a simulated second (efficiency) on {_cores(counts[-1])}: {', '.join(made)}.")
+    lines.append(f"Million cells per simulated second (efficiency) on {_cores(counts[-1])}: {', '.join(made)}.")
     for algorithm in style.NAMES:
         lacking = [str(count) for count in counts
                    if algorithm in algorithms_on(count) and (algorithm, count) not in series.table.index]
         if lacking:
-            lines.append(f"No verified run of {algorithm} with as many cells a core on {', '.join(lacking)}: it is not "
-                         "compared there.")
-    lines.append("Another number of cells a core may have another answer: of few, leaves are few.")
+            lines.append(f"No verified run of {algorithm} with this number of cells per core on {', '.join(lacking)}: "
+                         "it is not compared there.")
+    lines.append("The answer may differ for another number of cells per core: a small mesh has few leaves.")
     return "\n".join(lines)
 
 
-def _told(stretches, most):
+def _ranges_in_words(stretches, most):
     """Returns "podm on one core, pdr-podm from 32 to 64 cores, podm-home from 96 cores on"."""
     if len(stretches) == 1 and stretches[0][2] == most:
         return f"{stretches[0][0]} on all numbers of cores up to {most}"
-    told = []
+    parts = []
     for place, (algorithm, first, last) in enumerate(stretches):
         if place == len(stretches) - 1 and last == most:
-            told.append(f"{algorithm} from {first} on")
+            parts.append(f"{algorithm} from {first} on")
         elif first == last:
-            told.append(f"{algorithm} on {_cores(first)}")
+            parts.append(f"{algorithm} on {_cores(first)}")
         else:
-            told.append(f"{algorithm} {'up' if place == 0 else f'from {first}'} to {last} cores")
-    return ", ".join(told)
+            parts.append(f"{algorithm} {'up' if place == 0 else f'from {first}'} to {last} cores")
+    return ", ".join(parts)
 
 
 def _cores(count):
@@ -202,7 +202,7 @@ def picture(series, name):
         for (_, _, behind), (algorithm, ahead, _) in zip(stretches, stretches[1:]):
             axes.axvspan(behind, ahead, color=style.COLOURS[algorithm], alpha=0.15,
                          label=f"{style.NAMES[algorithm]} overtakes, {behind} to {ahead} cores")
-    rate.set(ylabel="million cells a simulated second", title=f"{name}: rate", ylim=(0, None))
+    rate.set(ylabel="million cells per simulated second", title=f"{name}: rate", ylim=(0, None))
     efficiency.set(ylabel="efficiency, % of PODM on one core", title="efficiency", ylim=(0, None))
     style.legend(rate, loc="upper left")
     style.finish(figure, f"{style.caption_of([series], has_paper=False)} Times are simulated, of equation 1.")

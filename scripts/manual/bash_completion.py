@@ -38,8 +38,8 @@ def action_of(entry):
 def value_cases(helps):
     """Returns the cases of the values of options; options with the same values share a case."""
     patterns = {}
-    for command, told in helps.items():
-        for entry in told.entries:
+    for command, parsed in helps.items():
+        for entry in parsed.entries:
             if entry.is_option and entry.type:
                 names = [shlex.quote(f"{command} {name}") for name in entry.names]
                 patterns.setdefault(action_of(entry), []).extend(names)
@@ -62,5 +62,5 @@ def script(program):
         name=program.name, function="_" + program.name.replace("-", "_"),
         find_command=FIND_COMMAND.format(commands="|".join(program.commands)) if program.commands else "",
         values="\n".join(value_cases(helps)),
-        offered="\n".join(word_case(command, told, program.commands if not command else ())
-                        for command, told in helps.items()))
+        offered="\n".join(word_case(command, parsed, program.commands if not command else ())
+                        for command, parsed in helps.items()))

@@ -70,23 +70,23 @@ def parse(text):
     lines = text.rstrip("\n").split("\n")
     if len(lines) < 2 or not lines[1].startswith("Usage: "):
         raise HelpError(f"not the help of a program: {lines[0]!r}")
-    told = HelpText(lines[0], lines[1].removeprefix("Usage: "), [], [])
+    parsed = HelpText(lines[0], lines[1].removeprefix("Usage: "), [], [])
     end = []
     for number, line in enumerate(lines[2:], start=2):
         follows = lines[number + 1] if number + 1 < len(lines) else ""
         if title := TITLE.match(line) if follows.startswith("  ") else None:
-            told.groups.append(Group(title["title"], []))
-        elif told.groups and (entry := ENTRY.match(line)):
-            told.groups[-1].entries.append(
+            parsed.groups.append(Group(title["title"], []))
+        elif parsed.groups and (entry := ENTRY.match(line)):
+            parsed.groups[-1].entries.append(
                 Entry(entry["names"].split(","), entry["type"] or "", entry["text"] or ""))
         elif more := MORE.match(line):
-            if not told.entries:
-                raise HelpError(f"said of nothing: {line!r}")
-            last = told.groups[-1].entries[-1]
+            if not parsed.entries:
+                raise HelpError(f"a text before the first option: {line!r}")
+            last = parsed.groups[-1].entries[-1]
             last.text = f"{last.text} {more['text']}".strip()
         elif line.startswith(" "):
             raise HelpError(f"neither an option nor a text: {line!r}")
         else:
             end.append(line)
-    told.end = [" ".join(lines.split("\n")) for lines in re.split(r"\n{2,}", "\n".join(end).strip("\n")) if lines]
-    return told
+    parsed.end = [" ".join(lines.split("\n")) for lines in re.split(r"\n{2,}", "\n".join(end).strip("\n")) if lines]
+    return parsed

@@ -39,7 +39,7 @@ def paragraphs(help_text):
 
 
 def usages(program):
-    return [told.usage for told in program.commands.values()] or [program.help.usage]
+    return [parsed.usage for parsed in program.commands.values()] or [program.help.usage]
 
 
 def synopsis(program):
@@ -73,9 +73,9 @@ def page(program, all_names):
              heading("SH", "OPTIONS"), *entries_lines(program.help), *paragraphs(program.help)]
     if program.commands:
         lines += [heading("SH", "COMMANDS")]
-    for name, told in program.commands.items():
-        lines += [heading("SS", f"{program.name} {name}"), escaped(told.description),
-                  *entries_lines(told), *paragraphs(told)]
+    for name, parsed in program.commands.items():
+        lines += [heading("SS", f"{program.name} {name}"), escaped(parsed.description),
+                  *entries_lines(parsed), *paragraphs(parsed)]
     lines += exit_codes(program)
     others = [name for name in all_names if name not in (program.name, "podm-bench")]  # its page is not installed
     if others:

@@ -26,9 +26,9 @@ class Program:
     @classmethod
     def asked(cls, path):
         """Asks the program at `path`. Raises HelpError if it does not answer as expected."""
-        told = help_text.parse(printed_by(path, "--help"))
-        names = [entry.names[0] for entry in told.group(COMMANDS).entries]
+        parsed = help_text.parse(printed_by(path, "--help"))
+        names = [entry.names[0] for entry in parsed.group(COMMANDS).entries]
         return cls(name=path.name,
                    version=printed_by(path, "--version").split("\n")[0].split()[-1],
-                   help=told,
+                   help=parsed,
                    commands={name: help_text.parse(printed_by(path, name, "--help")) for name in names})

@@ -51,17 +51,18 @@ def lost_row(info, image, mesh_path):
     volume, affine = read_volume(image), numpy.array(info["affine"])
     number, labels = image_components(volume)
     pieces = pieces_of_components(volume, number, len(labels), affine, read_mesh(mesh_path))
-    said, bridge, whole = numpy.zeros((3, len(labels)), bool)
+    predicted, bridge, whole = numpy.zeros((3, len(labels)), bool)
     for part in info["plan"]["thin_parts"]:
         component = number[tuple(part["voxel"])]
-        said[component] = True
+        predicted[component] = True
         bridge[component] |= part["kind"] == "bridge"
         whole[component] |= part["kind"] == "whole"
     is_lost, is_cut = pieces == 0, pieces > 1
     return {"components": len(labels), "lost": int(is_lost.sum()), "cut": int(is_cut.sum()),
-            "missed": int(((is_lost | is_cut) & ~said).sum()), "lost_not_said_whole": int((is_lost & ~whole).sum()),
-            "cut_by_details": int((is_cut & said & ~whole & ~bridge).sum()),
-            "said": int(said.sum()), "said_whole": int(whole.sum()),
+            "missed": int(((is_lost | is_cut) & ~predicted).sum()),
+            "lost_not_said_whole": int((is_lost & ~whole).sum()),
+            "cut_by_details": int((is_cut & predicted & ~whole & ~bridge).sum()),
+            "said": int(predicted.sum()), "said_whole": int(whole.sum()),
             "said_whole_and_lost_or_cut": int((whole & (is_lost | is_cut)).sum())}
 
 
@@ -110,7 +111,7 @@ def line(row):
             f"memory {row['memory_bytes'] / 2**20:5.0f} MiB {percent('planned_memory_bytes', 'memory_bytes')}  "
             f"{row['seconds']:6.2f} s {percent('planned_s', 'seconds')}  components {row['components']:5}: "
             f"lost {row['lost']}, cut {row['cut']} (at details {row['cut_by_details']}), missed {row['missed']}; "
-            f"said whole {row['said_whole']}, of them lost or cut {row['said_whole_and_lost_or_cut']}; "
+            f"predicted whole {row['said_whole']}, of them lost or cut {row['said_whole_and_lost_or_cut']}; "
             f"load {row['load']:.1f}")
 
 
@@ -119,12 +120,12 @@ def main():
     parser.add_argument("images", nargs="+", help="NIfTI, NRRD or INR")
     parser.add_argument("--program", default="podm", help="[default: podm]")
     parser.add_argument("--cells", default="100000,500000,2000000", type=numbers,
-                        help="targets, or nothing [default: 100000,500000,2000000]")
+                        help="targets; may be empty [default: 100000,500000,2000000]")
     parser.add_argument("--radii", default="", type=numbers,
                         help="radii, with their default delta, in sides of a cube of a voxel's volume [default: none]")
     parser.add_argument("--threads", type=int, default=1,
-                        help="of one processor time is compared, of more the wall's [default: 1]")
-    parser.add_argument("--repeats", type=int, default=2, help="of each run; the fastest counts [default: 2]")
+                        help="1: compares processor time; more: wall time [default: 1]")
+    parser.add_argument("--repeats", type=int, default=2, help="runs per case; the fastest counts [default: 2]")
     asked = parser.parse_args()
     for image in asked.images:
         for size in options_of_sizes(asked.program, image, asked.cells, asked.radii):

@@ -6,7 +6,7 @@ from figures.fig4a import WHY_ABOVE
 from figures.paper_claims import NAME
 
 from .html import Bar, bars, findings, fold, remarks_html
-from .paper_table import paper_table, said
+from .paper_table import paper_table, summary
 
 MOST_COUNTS = 4  # greatest number of core counts in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
@@ -19,7 +19,7 @@ FROM_SURFACE = ("tetgen", "gmsh")
 def first_screen(frame, outcome):
     answers = [("works", "Does it work here?", works(frame, outcome)), ("fast", "How fast is it?", fast(outcome)),
                ("scales", "How does it scale here?", scales(outcome)),
-               ("holds", "What of the paper holds?", holds(outcome))]
+               ("holds", "Which claims of the paper hold?", holds(outcome))]
     cards = "\n".join(f'<section class="answer" id="{name}" aria-labelledby="{name}-title">'
                       f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>'
                       for name, question, content in answers)
@@ -27,7 +27,7 @@ def first_screen(frame, outcome):
 
 
 def _answer(text):
-    return f'<p class="said">{escape(text)}</p>'
+    return f'<p class="answer-text">{escape(text)}</p>'
 
 
 def _aside(text):
@@ -45,17 +45,17 @@ def works(frame, outcome):
     proved, refuted = int(table["pass"].sum()), int(table["fail"].sum())
     faults = _faults(frame)
     if refuted:
-        said = f"No: {refuted} claims about our {meshes} meshes are refuted, {proved:,} proved."
+        answer = f"No: {refuted} claims about our {meshes} meshes are refuted, {proved:,} proved."
     elif faults:
-        said = f"Not always: {proved:,} claims about our {meshes} meshes are proved, none refuted; trials: {faults}."
+        answer = f"Not always: {proved:,} claims about our {meshes} meshes are proved, none refuted; trials: {faults}."
     else:
-        said = f"Yes: {proved:,} claims about our {meshes} meshes are proved, none refuted, and no trial failed."
+        answer = f"Yes: {proved:,} claims about our {meshes} meshes are proved, none refuted, and no trial failed."
     picture = [Bar(line["claim"].replace("_", " "), line["pass"] / number,
                    f"{line['pass']} of {number}" + (f", {line['fail']} refuted" if line["fail"] else ""),
                    guarantees.verdict_of(line), f"not run for {line['not_run']}" if line["not_run"] else "")
                for line, number in zip(lines, asked) if number]
-    return (_answer(said) + bars("share of meshes by proved claim", picture, full=1)
-            + _aside("Meshes proved, of those of which podm-verify was asked the claim, after the clock had stopped."
+    return (_answer(answer) + bars("share of meshes by proved claim", picture, full=1)
+            + _aside("Meshes proved, of those for which podm-verify checked the claim, outside the measured time."
                      + (f" Trials: {faults}." if refuted and faults else "")))
 
 
@@ -84,16 +84,16 @@ def fast(outcome):
     others = rows[rows["mesher"] != peers.OWN]
     ratios = [f"{line['whole_ratio']:.1f} times the rate of {_name(line)}" for line in others.to_dict("records")]
     cores = "one core" if first["cores"] == 1 else f"{first['cores']} cores"
-    said = f"On {cores} PODM makes {own['whole_rate'] / 1e6:.2f} million cells a second, {', '.join(ratios)}."
-    return (_answer(said) + bars(f"cells per second, {cores}", _bars_of_peers(rows))
+    answer = f"On {cores} PODM makes {own['whole_rate'] / 1e6:.2f} million cells per second, {', '.join(ratios)}."
+    return (_answer(answer) + bars(f"cells per second, {cores}", _bars_of_peers(rows))
             + _aside(f"{first['setting']}: {first['image']}, medians of {_runs(rows)} runs. Whole: from the image in "
-                     f"memory to the mesh in memory, the surface that TetGen and HXT are given counted. "
+                     f"memory to the mesh in memory, including the surface that TetGen and HXT are given. "
                      f"{peers.LEFT_OUT} {_own_rates(on_all)}"))
 
 
 def _name(line):
     name = NAMES.get(line["mesher"], line["mesher"])
-    return f"{name} with the making of its surface" if line["mesher"] in FROM_SURFACE else name
+    return f"{name} including its surface" if line["mesher"] in FROM_SURFACE else name
 
 
 def _bars_of_peers(rows):
@@ -128,8 +128,8 @@ def _rates_of_ours(outcome):
 
 
 def _own_rates(rates):
-    told = "; ".join(f"{name} {rate / 1e6:.2f}" for name, rate, _ in rates)
-    return f"Weak scaling of PODM, million cells a second: {told}." if rates else ""
+    parts = "; ".join(f"{name} {rate / 1e6:.2f}" for name, rate, _ in rates)
+    return f"Weak scaling of PODM, million cells per second: {parts}." if rates else ""
 
 
 def scales(outcome):
@@ -140,9 +140,9 @@ def scales(outcome):
     if not counts:
         return _answer("Not known: no verified run of weak scaling on more than one core.") + simulated
     picture = [bar for count in _some(counts) for bar in _bars_of_scaling(shown, count)]
-    said = _scaling_said(shown[0], counts[-1])
-    return (_answer(said) + bars("efficiency of weak scaling", picture, full=max(1.2, *(bar.value for bar in picture)),
-                                 mark=1)
+    answer = _scaling_summary(shown[0], counts[-1])
+    return (_answer(answer)
+            + bars("efficiency of weak scaling", picture, full=max(1.2, *(bar.value for bar in picture)), mark=1)
             + _aside(f"Efficiency: cells per second and core over PODM's on one core; the line is 100 %. {WHY_ABOVE}. "
                      f"{style.caption_of(shown, has_paper=False)}") + simulated)
 
@@ -169,14 +169,14 @@ def _bars_of_scaling(shown, count):
                               f"{algorithm} {shade}")
 
 
-def _scaling_said(series, count):
+def _scaling_summary(series, count):
     parts = []
     for algorithm, name in style.NAMES.items():
         if (algorithm, count) in series.table.index:
             line = series.table.loc[(algorithm, count)]
             parts.append(f"{name} {100 * line['refining_efficiency']:.0f} % in refining and "
                          f"{100 * line['efficiency']:.0f} % by equation 1")
-    return f"On {count} cores, of one core's rate a core: {'; '.join(parts)}."
+    return f"Rate per core on {count} cores, relative to one core: {'; '.join(parts)}."
 
 
 def holds(outcome):
@@ -185,7 +185,7 @@ def holds(outcome):
         return _answer("Not judged.") + _aside(experiment_verdicts.HOW)
     if NAME in outcome.missing:
         return _answer(f"Not judged: {outcome.missing[NAME]}.") + _experiments(outcome)
-    return _answer(f"{said(outcome.paper).capitalize()}.") + paper_table(outcome.paper) + _experiments(outcome)
+    return _answer(f"{summary(outcome.paper).capitalize()}.") + paper_table(outcome.paper) + _experiments(outcome)
 
 
 def _experiments(outcome):
@@ -197,8 +197,8 @@ def _experiments(outcome):
               for line in lines if line["verdict"] == experiment_verdicts.WITHDRAWN]
     return (_answer(f"Claims of our own experiments: {experiment_verdicts.counts(outcome.experiments)}.")
             + findings(parts["does_not_hold"])
-            + fold(f"What is not resolved: {len(parts['not_resolved'])}", findings(parts["not_resolved"]))
-            + fold(f"What holds: {len(parts['holds'])}", findings(parts["holds"]))
-            + fold(f"What cannot be decided here: {len(parts['cannot_be_decided'])}",
+            + fold(f"Not resolved: {len(parts['not_resolved'])}", findings(parts["not_resolved"]))
+            + fold(f"Holding: {len(parts['holds'])}", findings(parts["holds"]))
+            + fold(f"Not decided here: {len(parts['cannot_be_decided'])}",
                    findings(parts["cannot_be_decided"]))
-            + fold(f"What is no longer claimed: {len(former)}", findings(former)))
+            + fold(f"No longer claimed: {len(former)}", findings(former)))

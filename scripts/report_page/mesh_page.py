@@ -43,7 +43,7 @@ on surfaces, of {escape(record["input"]["path"])}, by {escape(record["program"])
     links = " ".join(f'<a href="#{key}">{title}</a>' for key, title in SECTIONS.items())
     body = "\n".join(section(key, title, parts[key]) for key, title in SECTIONS.items())
     main = f"""<div class="answers">
-{_card("holds", "Does it hold what was promised?", _holds(record, verification, request["unmet"]))}
+{_card("holds", "Does it keep its promises?", _holds(record, verification, request["unmet"]))}
 {_card("good", "How good are its cells?", _good(record))}
 </div>
 <nav aria-label="Sections">{links}</nav>
@@ -56,20 +56,20 @@ def _card(name, question, content):
             f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>')
 
 
-def _said(text):
-    return f'<p class="said">{escape(text)}</p>'
+def _answer(text):
+    return f'<p class="answer-text">{escape(text)}</p>'
 
 
 def _holds(record, verification, unmet):
     lines = _findings(record, verification)
     if unmet:
         listed = "".join(f"<li>{escape(sentence)}</li>" for sentence in unmet)
-        return _said("No, not all of it.") + f"<ul>{listed}</ul>"
+        return _answer("No, not all of it.") + f"<ul>{listed}</ul>"
     if verification is None:
-        return (_said("Yes, by what the mesher counts itself.") + findings(lines)
-                + '<p class="faint">Nobody else has checked it: --verify has podm-verify prove it, by exact arithmetic '
-                  "and none of the mesher's code.</p>")
-    return _said(f"Yes: podm-verify has proved {len(lines)} claims about the file.") + findings(lines)
+        return (_answer("Yes, by what the mesher counts itself.") + findings(lines)
+                + '<p class="faint">It is not verified independently: with --verify, podm-verify proves it by exact '
+                  "arithmetic, with none of the mesher's code.</p>")
+    return _answer(f"Yes: podm-verify has proved {len(lines)} claims about the file.") + findings(lines)
 
 
 def _findings(record, verification):
@@ -93,7 +93,7 @@ def _good(record):
                          f"{quality['max_radius_mm']:.4g} of {used['radius_mm']:.4g} mm", "own"))
     note = ("Dihedral angles have no bound without --optimize or --min-dihedral: the extremes are of few cells, as the "
             "histograms show.")
-    return (_said(f"Radius-edge ratio up to {quality['max_radius_edge']:.4g}, dihedral angles from "
+    return (_answer(f"Radius-edge ratio up to {quality['max_radius_edge']:.4g}, dihedral angles from "
                   f"{quality['min_dihedral_deg']:.3g} to {quality['max_dihedral_deg']:.4g} degrees.")
             + bars("the worst cells", lines, full=1) + f'<p class="faint">{note}</p>')
 
@@ -131,13 +131,13 @@ def _labels(mesh, quality, record):
 def _claims(record, verification):
     own = pandas.DataFrame([{"guarantee": f"all {statement}", "verdict": verdict, "cells or facets that do not": misses}
                             for (statement, misses, verdict) in _counted(record)])
-    made = ["<p>What the mesher counts itself, while the mesh is in memory:</p>", table_html(own, "Guarantees")]
+    made = ["<p>The mesher's own counts, while the mesh is in memory:</p>", table_html(own, "Guarantees")]
     if verification is None:
-        return "\n".join([*made, "<p>podm-verify was not asked (--verify).</p>"])
+        return "\n".join([*made, "<p>podm-verify did not run (--verify).</p>"])
     lines = [{"claim": name.replace("_", " "), "verdict": claim["verdict"], "found": claim["reason"],
               "checked": f"{claim['num_checked']:,}", "how": claim["method"]}
              for name, claim in verification["claims"].items()]
-    return "\n".join([*made, "<p>What podm-verify decides of the file:</p>",
+    return "\n".join([*made, "<p>Claims about the file that podm-verify decided:</p>",
                       table_html(pandas.DataFrame(lines), "Claims of podm-verify")])
 
 
@@ -150,8 +150,8 @@ def _run(record):
     phases = [Bar(name, seconds, f"{seconds:.2f} s", "own") for name, seconds in record["phases_s"].items()
               if seconds >= 0.005]
     facts = {"algorithm": record["algorithm"], "threads": record["threads"]["used"],
-             "cells a second, image to mesh": f"{record['cells_per_second']:,.0f}",
-             "memory at most": f"{record['peak_rss_bytes'] / 2**30:.3g} GiB",
+             "cells per second, image to mesh": f"{record['cells_per_second']:,.0f}",
+             "peak memory": f"{record['peak_rss_bytes'] / 2**30:.3g} GiB",
              "delta, mm": f"{record['used']['delta_mm']:.4g}", "space": record["options"]["space"],
              "ended": record["stop_reason"], "SHA-256 of the input": record["input"]["sha256"],
              "SHA-256 of the mesh": record["mesh_sha256"]}

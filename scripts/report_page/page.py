@@ -34,19 +34,19 @@ NOTES = {
               "within rounds.",
     "table2": "All kinds: with writes of the mesh and reads of the image and its transform, which the other columns "
               "leave out.",
-    "simulated": "Seconds, losses and hops are of virtual workers. The wall time is what playing them took here, and "
-                 "no time of theirs.",
+    "simulated": "Seconds, losses and hops are of virtual workers. The wall time is that of the simulation, not "
+                 "their own.",
     "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the "
-               "largest of the matrix over its diagonal. The other meshers' sizes are those nearest to as many cells.",
-    "peers": "Whole: from the image in memory to the mesh in memory, with the making of the surface that TetGen and "
+               "largest of the matrix over its diagonal. The other meshers' sizes have the nearest number of cells.",
+    "peers": "Whole: from the image in memory to the mesh in memory, including the surface that TetGen and "
              f"HXT are given. {peers.LEFT_OUT} From the surface: the volume part of those two, beside that of PODM "
              f"(podm_volume), without the cells that come with the surface. {peers.COVERAGE}",
 }
 INTERVALS = ("In brackets: an interval of order statistics, which holds the median with 75 % of three rounds, 93.75 % "
-             "of five and 95 % or more from six on.")
+             "of five and 95 % or more from six rounds on.")
 # The tables by their order in the section: dependence on cells per core, on the fit and on single constants, then
 # others.
-MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells a core, fitted and not fitted",
+MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells per core, fitted and not fitted",
                   "fitted_shares": "What the fitted constants decide: shares of worker time on several blades",
                   "ablation": "Findings with each constant switched off and doubled",
                   "machine": "Machines described, and their constants",
@@ -54,7 +54,7 @@ MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells a core, fitted and not 
                   "deviation_means": "Speed-ups: mean absolute deviation from the paper's",
                   "deviation": "Speed-ups (efficiencies) and their deviation from the paper's",
                   "efficiency_and_hops": "Efficiencies and zero-hop shares, %",
-                  "lost": "Worker microseconds a cell, by cause"}
+                  "lost": "Worker microseconds per cell, by cause"}
 MACHINE_FIGURES = ("deviation", "lost")
 
 
@@ -80,13 +80,13 @@ def _machines(frame):
         return "No trials."
     fit = int(frame["headline"].sum())
     machines = " and ".join(escape(name) for name in frame["machine"].unique())
-    return f"{len(frame)} trials on {machines}, {fit} of them verified and fit for numbers."
+    return f"{len(frame)} trials on {machines}, {fit} of them verified and usable for numbers."
 
 
 def _claims(outcome):
     claims, cells = readable_verdicts(outcome.verdicts)
-    return (f"<p>What the paper finds, judged on our records by shape: machines differ, so ratios and trends are "
-            f"compared, not seconds.</p>\n{_split(claims, 'Claims of the paper', 'cannot_fill')}\n"
+    return ("<p>The findings of the paper, judged by ratios and trends of our records: machines differ, so seconds are "
+            f"not compared.</p>\n{_split(claims, 'Claims of the paper', 'cannot_fill')}\n"
             f"<h3>Claims of our experiments</h3>\n{_experiments(outcome)}\n"
             f"<h3>Cells of Tables 1 and 2</h3>\n{_split(cells, 'Cells of Tables 1 and 2', 'cannot_fill', False)}")
 
@@ -110,7 +110,7 @@ def _split(table, title, undecided, is_open=True):
 
 def _guarantees(outcome):
     """Shows the number of meshes for which podm-verify decided each claim."""
-    made = ["<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of "
+    made = ["<p>Claims about meshes, decided exactly by <code>podm-verify</code> outside the measured time: numbers of "
             "meshes.</p>"]
     for name, title in (("guarantees", "Our meshes"), ("guarantees_of_others", "Meshes of other meshers")):
         if name in outcome.tables:

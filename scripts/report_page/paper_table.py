@@ -9,7 +9,7 @@ from .html import verdict_span
 ORDER = [AGREES, AGREES + IN_PART, CONTRADICTED + IN_PART, CONTRADICTED, NOT_RESOLVED, NOT_JUDGED]
 
 
-def said(rows):
+def summary(rows):
     """Returns the number of lines by verdict: measured, then simulated."""
     return "; ".join(f"{side}: {_counts(rows, side)}" for side in SIDES)
 

@@ -19,8 +19,8 @@ class TooManyCells(Exception):
 def pack(mesh):
     """Returns the data for viewer.js. Points keep 16 bits per coordinate. Raises TooManyCells."""
     if len(mesh.cells) > MAX_CELLS:
-        raise TooManyCells(f"{len(mesh.cells):,} cells are too many for a page; give it a mesh of at most "
-                           f"{MAX_CELLS:,}, for example of `podm mesh --target-elements 100000`")
+        raise TooManyCells(f"{len(mesh.cells):,} cells are more than a page can show; use a mesh of at most "
+                           f"{MAX_CELLS:,}, for example from `podm mesh --target-elements 100000`")
     used, cells = numpy.unique(mesh.cells, return_inverse=True)
     cells = _outward(mesh, cells.reshape(-1, 4))
     points, low, step_mm = _quantized(mesh.points[used])

@@ -6,13 +6,13 @@ import random
 PASSED = {claim: "pass" for claim in ("structure", "delaunay", "radius_edge", "boundary_angles", "size", "conformity")}
 ROW = {
     "schema": 4, "experiment": "weak", "repeat": 1, "warmup": False, "status": "ok", "reason": "",
-    "algorithm": "podm", "input": {"name": "phantom:made-up", "path": "inputs/made-up.nii.gz"},
+    "algorithm": "podm", "input": {"name": "phantom:synthetic", "path": "inputs/synthetic.nii.gz"},
     "threads": {"asked": 1, "used": 1}, "virtual": None, "replay": None,
     "phases_s": {"read": 1.0, "transform": 1.0, "refine": 24.0, "extract": 1.18, "measure": 3.0, "write": 5.0,
                  "calibrate": 60.0, "draw": 7.0},
     "cells": 3_000_000, "quality": {"max_radius_edge": 1.92, "min_facet_angle_deg": 30.4}, "verdicts": PASSED,
     "programs": {"podm": {"sha256": "ab" * 32, "version": "podm 0.1.0"}},
-    "environment": {"cpu": "Made-up CPU", "usable_processors": 2, "kernel": "Linux", "compiler": "GNU 12"},
+    "environment": {"cpu": "Synthetic CPU", "usable_processors": 2, "kernel": "Linux", "compiler": "GNU 12"},
 }
 SEEDS = itertools.count(1)  # no row replaces another
 BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
@@ -22,7 +22,7 @@ def row(algorithm="podm", cores=1, **changes):
     """Makes a row. A run in virtual time has virtual seconds; the present machine's seconds then have no meaning."""
     made = copy.deepcopy(ROW)
     made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores,
-                trial=f"made-up,algorithm={algorithm},threads={cores},seed={next(SEEDS)}")
+                trial=f"synthetic,algorithm={algorithm},threads={cores},seed={next(SEEDS)}")
     made.update(changes)
     if made.get("executor") == "virtual" and not made["virtual"]:
         timed = {phase: made["phases_s"][phase] for phase in ("initial", "refine") if phase in made["phases_s"]}
@@ -69,7 +69,7 @@ def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=No
         speedup = 1 if cores == 1 else speedup_of(algorithm, cores)
         seconds = cells_per_core * cores / (1e5 * speedup)
         made = row(algorithm, cores, experiment="simulated_weak", executor="virtual", cells=cells_per_core * cores,
-                   trial=f"{name}-on-{cores},algorithm={algorithm}", input={"name": f"phantom:made-up@{name}"},
+                   trial=f"{name}-on-{cores},algorithm={algorithm}", input={"name": f"phantom:synthetic@{name}"},
                    phases_s={"refine": seconds}, **changes)
         if zero_hops is not None and cores > 16:
             made.update(hops=[int(1e9 * zero_hops), int(1e9 * (1 - zero_hops))], leaves={"nodes": cores // 16})
@@ -95,11 +95,11 @@ def peer(name, cells=1_000_000, **changes):
     """Returns a row of another mesher, which begins with a surface, promises one claim and misses another."""
     changes = {"phases_s": {"surface": 4.0, "refine": 10.0, "write": 3.0}, **changes}
     made = row(name, cells=cells, promises=["structure"], verdicts={**PASSED, "delaunay": "fail"}, **changes)
-    made["programs"]["peer"] = {"name": name, "version": "made up"}
+    made["programs"]["peer"] = {"name": name, "version": "synthetic"}
     return made
 
 
-def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher=None, angles=(5, 170), **changes):
+def solved(iterations, image="synthetic", optimize=None, min_dihedral=None, mesher=None, angles=(5, 170), **changes):
     """Returns a row whose mesh was given to a solver. Its dihedral angles are `angles`, in equal numbers."""
     made = peer(mesher) if mesher else row()
     name = mesher or f"{'both' if optimize else 'r7' if min_dihedral else 'none'}"
@@ -111,7 +111,7 @@ def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher
     asked = {"threads": 1, "solve": True, "optimize": optimize, "min_dihedral": min_dihedral}
     made.update(experiment="solvers", trial=f"1M-{name}", input={"name": image},
                 asked={key: value for key, value in asked.items() if value is not None},
-                solve={"solver": "made up", "poisson": by_preconditioner, "elasticity": by_preconditioner},
+                solve={"solver": "synthetic", "poisson": by_preconditioner, "elasticity": by_preconditioner},
                 dihedral_deg={"least": min(angles), "largest": max(angles), "counts": counts}, **changes)
     return made
 
@@ -162,7 +162,7 @@ def report():
         return {"name": name, "unit": "", "low": low, "high": high, "minimum": minimum, "maximum": maximum,
                 "counts": [0, 3, 9, 20, 11, 5, 1, 0]}
 
-    return {"schema": "podm-verify/1", "mesh": {"path": "made-up.vtu", "cells": 49},
+    return {"schema": "podm-verify/1", "mesh": {"path": "synthetic.vtu", "cells": 49},
             "claims": {"radius_edge": {"histograms": [histogram("radius_edge_ratio", 0.6, 2.0, 0.62, 1.92),
                                                       histogram("dihedral_angle", 0, 180, 2.0, 170.0)]},
                        "boundary_angles": {"histograms": [histogram("boundary_facet_angle", 0, 180, 30.2, 118.0)]}}}

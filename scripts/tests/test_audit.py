@@ -78,7 +78,7 @@ class Figures(Tree):
         self.assertEqual(self.faults(f"3.00{QUERY} M cells\n"), [])
         self.assert_fault(f"25.0{QUERY.replace('cells', 'refining_s').replace('/1e6 .2f', '.1f')} s\n", "two machines")
 
-    def test_a_row_that_tells_its_processor_needs_no_topology(self):
+    def test_a_row_that_records_its_processor_needs_no_topology(self):
         identity = {"vendor": "GenuineIntel", "family": 6, "model": 207, "stepping": 2, "cache_bytes": {}}
         query = QUERY.replace("cells", "refining_s").replace("/1e6 .2f", ".1f")
         for row in self.rows:
@@ -98,7 +98,7 @@ class Figures(Tree):
         self.assertEqual(self.faults(f"3.00{QUERY} M cells\n"), [])
         self.assert_fault(f"24.0{QUERY.replace('cells', 'refining_s').replace('/1e6 .2f', '.1f')} s\n", "no machine")
 
-    def test_virtual_seconds_need_no_machine_and_wall_seconds_of_playing_them_do(self):
+    def test_virtual_seconds_need_no_machine_and_wall_seconds_of_simulating_them_do(self):
         self.rows = [synthetic.row(executor="virtual", environment=environment("gone"), phases_s={"refine": 5.0})]
         self.write_rows()
         query = "<!--q 0.1.0/sizes/rows.jsonl;; {}; only; .1f-->"
@@ -242,7 +242,7 @@ class Freshness(Tree):
         self.hashes(self.folder / "canonical_hashes.json", "new")
         self.assertEqual(self.judged(), (0, 0))
 
-    def test_the_exit_code_says_it(self):
+    def test_the_exit_code_reports_it(self):
         (self.root / "page.md").write_text(f"3.00{QUERY}\n")
         self.assertEqual(main(["--root", str(self.root)]), 0)
         (self.root / "page.md").write_text(f"3.01{QUERY}\n")

@@ -23,7 +23,7 @@ class InBrowser(unittest.TestCase):
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
 
-    def test_loads_without_complaints_and_fits(self):
+    def test_loads_without_errors_and_fits(self):
         for width, scheme in ((1400, "light"), (1400, "dark"), (400, "light"), (400, "dark"), (320, "light")):
             with self.subTest(width=width, scheme=scheme):
                 self.browser.open(self.path, width, scheme=scheme)

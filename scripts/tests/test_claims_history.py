@@ -98,7 +98,7 @@ class Lost(Repository):
         self.check_passes()
         self.assertIn("claimed again", self.page())
 
-    def test_one_that_moved_is_there_and_the_page_tells_from_where(self):
+    def test_one_that_moved_is_there_and_the_page_states_from_where(self):
         self.commit(claim(), claim("sound"))
         self.write(claim(), experiment="b")
         moved = self.commit(claim("sound"))
@@ -134,7 +134,7 @@ class Renamed(Repository):
         self.assertIn("| `fast` | superseded by `faster` | It is fast. (a; at least 0.98) | It was too vague. |",
                       self.page())
 
-    def test_names_that_two_experiments_shared_are_told_apart(self):
+    def test_names_that_two_experiments_shared_are_distinguished(self):
         self.commit(claim())
         self.commit(claim(), experiment="b")
         self.write(claim("faster", more='supersedes = "b:fast"\nreason = "Two had the name."\n'), experiment="b")
@@ -177,7 +177,7 @@ class Weakened(Repository):
         self.write(claim(at_least=0.99, trials='["10M", "3M", "1M"]', where="{threads = [1, 2, 4]}"))
         self.check_passes()
 
-    def test_a_restored_bound_needs_none_and_the_page_tells_of_it(self):
+    def test_a_restored_bound_needs_none_and_the_page_lists_it(self):
         self.commit(claim())
         loosened = self.commit(claim(at_least=0.9))
         self.commit(claim())
@@ -185,7 +185,7 @@ class Weakened(Repository):
         self.assertIn("loosened to at least 0.9, restored", self.page())
         self.assertIn(f"| fast | {loosened} | ", self.page())
 
-    def test_bounds_of_different_values_are_not_compared_but_told(self):
+    def test_bounds_of_different_values_are_listed_and_not_compared(self):
         before, = definitions.read(claim(), "a")[0]
         after, = definitions.read(claim(at_least=0.5).replace("seconds", "cells"), "a")[0]
         self.assertEqual(definitions.loosened(before, after), [])
@@ -218,7 +218,7 @@ class Page(Repository):
 
 
 class WithoutHistory(Repository):
-    def test_nothing_is_checked_and_the_reason_is_said(self):
+    def test_nothing_is_checked_and_the_reason_is_given(self):
         self.write(claim())
         self.assertEqual(self.call("--check").stdout, "not checked: there is no commit yet\n")
         self.commit(claim())

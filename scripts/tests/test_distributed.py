@@ -24,7 +24,7 @@ def row(ranks, per_rank=100_000, by_rank=None, basis="simulated", cells=None, **
     even = spent(transform=0.0, refine=1e-6 * per_rank, extract=0.0, measure=5.0)
     told = {"number": ranks, "imbalance": 1.1, "rounds": [{"deferred": cells // 50}, {"deferred": 0}][:ranks],
             "by_rank": [{"cells": cells // ranks, "spent": one} for one in by_rank or [even] * ranks]}
-    made = synthetic.row(cores=ranks, cells=cells, experiment="distributed_weak", trial=f"made-up,ranks={ranks}",
+    made = synthetic.row(cores=ranks, cells=cells, experiment="distributed_weak", trial=f"synthetic,ranks={ranks}",
                          asked={"ranks": ranks, "target_elements": per_rank * ranks}, ranks=told,
                          resolved={"cells": cells}, process={"bytes_per_cell_beyond_image": 150.0}, **changes)
     return {**made, "basis": basis}
@@ -139,7 +139,7 @@ class Extrapolation(unittest.TestCase):
         self.assertLess(line["refining_efficiency_low"], line["refining_efficiency"])
         self.assertGreater(line["worst_miss"], 0.1)
 
-    def test_nothing_is_said_from_two_sizes(self):
+    def test_nothing_is_derived_from_two_sizes(self):
         self.assertTrue(self.extrapolated(SIZES[:2]).empty)
         self.assertEqual(set(self.extrapolated()["n"]), {len(SIZES)})
         self.assertTrue(self.extrapolated(counts=(1, 2, 4)).empty)
@@ -162,7 +162,7 @@ class Shown(unittest.TestCase):
         rows = [modelled(ranks, size) for size in SIZES for ranks in (1, 8, 64)]
         return outcome.make(frame_of([*rows, *(row(ranks, basis="measured") for ranks in (1, 2, 4))]))
 
-    def test_tables_and_figure_are_there_and_told_apart(self):
+    def test_tables_and_figure_are_there_and_distinguished(self):
         made = self.made()
         shown = made.tables["distributed"][1]
         self.assertEqual({one.split(",")[0] for one in shown["basis"]}, {"simulated", "measured processor seconds"})

@@ -57,7 +57,7 @@ class Scaling(unittest.TestCase):
         other = synthetic.row()["environment"] | {"cpu": "Another"}
         rows = [synthetic.row(), synthetic.row(cores=2), synthetic.row(cores=2, environment=other),
                 synthetic.row(cores=2, input={"name": "other.nii"}), synthetic.row(cores=2, programs={}),
-                synthetic.row(cores=2, trial="made-up,contention=random")]
+                synthetic.row(cores=2, trial="synthetic,contention=random")]
         (series,) = scaling.weak_series(frame_of(rows))
         self.assertEqual(series.table.loc[("podm", 2), "n"], 1)
 
@@ -134,7 +134,7 @@ class Hops(unittest.TestCase):
 
     def test_experiments_sizes_and_settings_are_never_added_up(self):
         shown = self.rows([99, 1], cores=32) + self.rows([98, 2], cores=64)
-        others = [*self.rows([1, 99], experiment="another"), *self.rows([1, 99], trial="made-up,initial_ratio=2"),
+        others = [*self.rows([1, 99], experiment="another"), *self.rows([1, 99], trial="synthetic,initial_ratio=2"),
                   *self.rows([1, 99], input={"name": "another.nii"}), *self.rows([1, 99], cells=5)]
         ours = self.ours([*others, *shown])
         self.assertEqual((ours.loc[(32, 0), "share"], ours.loc[(32, 0), "n"]), (0.99, 1))
@@ -166,7 +166,7 @@ class Simulated(unittest.TestCase):
         self.assertEqual(line["M cells per simulated second"], "24")
         self.assertEqual(line["simulated contention, worker seconds"], "3")
         self.assertEqual(line["simulated 0 hops"], "75.00 %")
-        self.assertEqual(line["wall time of playing it, s"], "1.23e+03")
+        self.assertEqual(line["wall time of the simulation, s"], "1.23e+03")
         heads = [head for head in shown if "second" in head or "hops" in head]
         self.assertTrue(all("simulated" in head for head in heads), heads)
         self.assertFalse([head for head in shown if "time" in head and "wall" not in head])
@@ -175,7 +175,7 @@ class Simulated(unittest.TestCase):
         rows = [synthetic.row(), synthetic.row("pdr-podm", hops=[3, 1]), self.row(), synthetic.row(executor="virtual")]
         for name, number in (("table1", "seconds"), ("table2", "0 hops")):
             shown = outcome.make(frame_of(rows)).tables[name][1]
-            is_simulated = shown["basis"].str.startswith("simulated, 3\N{NO-BREAK SPACE}M cells a core")
+            is_simulated = shown["basis"].str.startswith("simulated, 3\N{NO-BREAK SPACE}M cells per core")
             self.assertTrue(is_simulated.any() and not is_simulated.all(), shown)
             is_marked = shown[number].str.startswith(table1.MARKS["simulated"])
             self.assertEqual(list(is_marked), list(is_simulated))
@@ -284,7 +284,7 @@ class Experiments(unittest.TestCase):
         self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 not resolved, "
                          "1 cannot be decided here; 1 withdrawn or superseded")
 
-    def test_intervals_tell_their_coverage_and_what_was_withdrawn_its_successor(self):
+    def test_intervals_state_their_coverage_and_withdrawn_claims_their_successor(self):
         found = experiment_verdicts.table(self.FOUND).set_index("claim")
         self.assertEqual(found.loc["one", "interval"], "1.25 to 1.75, 75.0 % of 3 rounds")
         self.assertEqual(found.loc["zero", "reason"], "superseded by another: because of <zero>")
@@ -354,7 +354,7 @@ class Drawing(unittest.TestCase):
             figure = draw(series)
             legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
             words = {text.get_text() for legend in legends for text in legend.get_texts()}
-            size = "simulated, 3\N{NO-BREAK SPACE}M cells a core"
+            size = "simulated, 3\N{NO-BREAK SPACE}M cells per core"
             self.assertTrue({"PODM, paper", "PODM, measured", f"PODM, {size}", f"PDR.PODM, {size}"} <= words, words)
             self.assertNotIn("PDR.PODM, measured", words)
             self.assertIn("order statistics", figure.get_label())

@@ -13,7 +13,7 @@ from test_figures import frame_of
 from test_programs import call, write_rows
 
 COUNTS = (1, 32, 64, 128, 160, 192, 224, 256)
-MACHINE = ("name = 'Made-up'\n[processor]\nclock_ghz = 2.0\ncore_speed = 0.2\n[memory]\ncycles_per_hop = 1500\n")
+MACHINE = ("name = 'Synthetic'\n[processor]\nclock_ghz = 2.0\ncore_speed = 0.2\n[memory]\ncycles_per_hop = 1500\n")
 
 
 def row_of(one, hops=(60, 30, 10)):
@@ -21,7 +21,7 @@ def row_of(one, hops=(60, 30, 10)):
     cores, cells = one["threads"]["used"], one["cells"]
     whole = cells * 1e-5
     one["virtual"].update(worker_s={"compute": whole, "memory_remote": 0.1 * whole, "network_queue": 0.0},
-                          machine={"name": "Made-up", "sha256": "ab" * 32, "constants": {"core_speed": 0.2}},
+                          machine={"name": "Synthetic", "sha256": "ab" * 32, "constants": {"core_speed": 0.2}},
                           refine_s=1.1 * whole / cores)
     one["counters"] = {"cells_created": 4 * cells}
     reads = [cells * count for count in hops] if cores > 16 else "unavailable: one node"
@@ -70,7 +70,7 @@ class Rows(unittest.TestCase):
         rows = [*rows_of(), failed, *rows_of((256,), cells_per_core=10_000), *other, *rows_of((256,), verdicts=None)]
         self.assertEqual(self.runs(rows), self.runs(rows_of()))
 
-    def test_what_lacks_is_said(self):
+    def test_what_is_missing_is_reported(self):
         self.assertIn("no verified simulated row of podm on one core", self.refused([]))
         self.assertIn("on one core", self.refused(rows_of(COUNTS[1:])))
         self.assertIn("timed_out", self.refused(rows_of(status="timed_out")))
@@ -78,7 +78,7 @@ class Rows(unittest.TestCase):
         older = rows_of()
         for one in older:
             one["virtual"].pop("worker_s")
-        self.assertIn("do not tell virtual.worker_s.compute", self.refused(older))
+        self.assertIn("do not record virtual.worker_s.compute", self.refused(older))
 
     def test_an_older_row_among_newer_ones_does_not_count(self):
         rows = rows_of()

@@ -75,25 +75,26 @@ class Load(unittest.TestCase):
         frame = self.load(synthetic.row(executor="virtual", phases_s={"read": 1.0, "refine": 7.0})).frame
         self.assertEqual((frame["seconds"][0], frame["refining_s"][0], frame["basis"][0]), (8, 8, "simulated"))
 
-    def test_a_series_is_told_by_its_trial(self):
+    def test_a_series_is_identified_by_its_trial(self):
         for trial, setting, image in (
-            ("1M,algorithm=podm,threads=2,initial_ratio=4,seed=1", "1M,initial_ratio=4", "made-up"),
-            ("peers,mesher=cgal,input=abdomen", "peers", "made-up"),
+            ("1M,algorithm=podm,threads=2,initial_ratio=4,seed=1", "1M,initial_ratio=4", "synthetic"),
+            ("peers,mesher=cgal,input=abdomen", "peers", "synthetic"),
             ("0.5M-growing-4,threads=4", "0.5M-growing", ""),
-            ("40k-on-128,algorithm=podm", "40k", "made-up"),
+            ("40k-on-128,algorithm=podm", "40k", "synthetic"),
         ):
-            frame = self.load(synthetic.row(trial=trial, input={"name": "made-up"})).frame
+            frame = self.load(synthetic.row(trial=trial, input={"name": "synthetic"})).frame
             self.assertEqual((frame["setting"][0], frame["image"][0]), (setting, image))
 
-    def test_a_described_machine_is_told_by_its_description(self):
+    def test_a_described_machine_is_identified_by_its_description(self):
         def virtual(sha256):
-            machine = {"name": "Made-up", "path": "made-up.toml", "sha256": sha256, "constants": {"core_speed": 0.1}}
+            machine = {"name": "Synthetic", "path": "synthetic.toml", "sha256": sha256,
+                       "constants": {"core_speed": 0.1}}
             return {"cost": "measured", "refine_s": 1.0, "phases_s": {"refine": 1.0}, "machine": machine}
 
         rows = [synthetic.row(executor="virtual", virtual=virtual(one)) for one in ("aa" * 32, "bb" * 32)]
         machines = set(self.load(*rows, synthetic.row(executor="virtual"), synthetic.row()).frame["machine"])
         self.assertEqual(len(machines), 4, "two descriptions, none, and the processor")
-        self.assertIn("Made-up CPU", machines)
+        self.assertIn("Synthetic CPU", machines)
 
     def test_missing_files_are_errors(self):
         with self.assertRaisesRegex(RecordError, "no such file"):

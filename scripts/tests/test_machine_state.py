@@ -31,9 +31,9 @@ class Identity(unittest.TestCase):
         self.assertEqual(machine_state.name_of(on(IDENTITY)["environment"]),
                          machine_state.name_of(on(IDENTITY, memory_bytes={"available": 7})["environment"]))
 
-    def test_rows_without_an_identity_are_told_apart_by_their_topology(self):
+    def test_rows_without_an_identity_are_distinguished_by_their_topology(self):
         names = {machine_state.name_of(on(topology_sha256=one * 64)["environment"]) for one in "ab"}
-        self.assertEqual(names, {"Made-up CPU (topology aaaaaaaa)", "Made-up CPU (topology bbbbbbbb)"})
+        self.assertEqual(names, {"Synthetic CPU (topology aaaaaaaa)", "Synthetic CPU (topology bbbbbbbb)"})
 
     def test_rows_of_two_machines_meet_in_no_ratio(self):
         other = IDENTITY | {"model": 2}

@@ -30,13 +30,13 @@ def printed_by(*command):
 
 def helps_of(program):
     """Returns for the program and each of its commands the words that call it and the output of --help."""
-    told = printed_by(program, "--help")
-    commands = re.findall(r"^  (\w+)  ", told.partition("Subcommands:")[2], re.MULTILINE)
-    return [([], told), *(([command], printed_by(program, command, "--help")) for command in commands)]
+    text = printed_by(program, "--help")
+    commands = re.findall(r"^  (\w+)  ", text.partition("Subcommands:")[2], re.MULTILINE)
+    return [([], text), *(([command], printed_by(program, command, "--help")) for command in commands)]
 
 
-def options_in(told):
-    return re.findall(r"^  (?:-\w,)?(--[\w-]+)", told, re.MULTILINE)
+def options_in(text):
+    return re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE)
 
 
 def plain(page):
@@ -48,20 +48,20 @@ class Pages(unittest.TestCase):
     def page(self, program):
         return (BUILD / "share/man/man1" / f"{program.name}.1").read_text()
 
-    def test_all_that_help_tells_is_in_them(self):
+    def test_all_that_help_prints_is_in_them(self):
         for program in PROGRAMS:
             page = plain(self.page(program)).lower()
-            for called, told in helps_of(program):
-                for word in re.findall(r"\S+", re.sub(r"^(Usage: .*|[A-Z].*:)$", "", told, flags=re.MULTILINE)):
+            for called, text in helps_of(program):
+                for word in re.findall(r"\S+", re.sub(r"^(Usage: .*|[A-Z].*:)$", "", text, flags=re.MULTILINE)):
                     if word not in ("Exit", "codes:"):
                         for name in word.split(","):
                             self.assertIn(name.rstrip(".").lower(), page, f"{program.name} {called}")
 
-    def test_they_tell_one_version(self):
-        told = {printed_by(program, "--version").splitlines()[0].split()[-1] for program in PROGRAMS}
-        self.assertEqual(len(told), 1)
+    def test_they_state_one_version(self):
+        versions = {printed_by(program, "--version").splitlines()[0].split()[-1] for program in PROGRAMS}
+        self.assertEqual(len(versions), 1)
         for program in PROGRAMS:
-            self.assertIn(f'"podm {told.copy().pop()}"', self.page(program).splitlines()[0])
+            self.assertIn(f'"podm {versions.copy().pop()}"', self.page(program).splitlines()[0])
 
     def test_groff_finds_no_fault(self):
         for program in PROGRAMS:
@@ -82,9 +82,9 @@ class Completions(unittest.TestCase):
 
     def test_every_option_and_command_is_offered(self):
         for program in PROGRAMS:
-            for called, told in helps_of(program):
+            for called, text in helps_of(program):
                 offered = self.complete("bash", program.name, *called, "--")
-                self.assertEqual(offered, set(options_in(told)), (program.name, called))
+                self.assertEqual(offered, set(options_in(text)), (program.name, called))
                 if called == ["mesh"]:
                     self.assertEqual(self.complete("zsh", program.name, *called, "--"), offered)
         for shell in COMPLETED_BY:
@@ -117,13 +117,13 @@ class HelpText(unittest.TestCase):
                 help_text.parse(text)
 
     def test_entries(self):
-        told = help_text.parse("what it does\nUsage: p [OPTIONS]\n\nSome:\n  -o,--output MESH    a file\n"
+        parsed = help_text.parse("what it does\nUsage: p [OPTIONS]\n\nSome:\n  -o,--output MESH    a file\n"
                                "                      of tets\n  --way a|b\n                      one\n  --flag\n\n"
                                "The end,\nin two lines.\n\nExit codes: 0 ok.\n")
-        output, way, flag = told.group("Some").entries
+        output, way, flag = parsed.group("Some").entries
         self.assertEqual((output.names, output.type, output.text), (["-o", "--output"], "MESH", "a file of tets"))
         self.assertEqual((way.choices, way.text, flag.type), (["a", "b"], "one", ""))
-        self.assertEqual(told.end, ["The end, in two lines.", "Exit codes: 0 ok."])
+        self.assertEqual(parsed.end, ["The end, in two lines.", "Exit codes: 0 ok."])
 
 
 if __name__ == "__main__":

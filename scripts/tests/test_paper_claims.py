@@ -24,8 +24,8 @@ IDS = ["podm-weak-scaling", "pdr-podm-weak-scaling", "podm-falls-behind", "cross
 
 
 def line(measured, simulated=None, says="it is so"):
-    return {"id": "made-up", "says": says, "place": "Table 1", "measured": measured,
-            "simulated": simulated or {"reason": "not played"}}
+    return {"id": "synthetic", "says": says, "place": "Table 1", "measured": measured,
+            "simulated": simulated or {"reason": "not simulated"}}
 
 
 def judged(measured, simulated=None, frame=None, **verdicts):
@@ -33,7 +33,7 @@ def judged(measured, simulated=None, frame=None, **verdicts):
     "sim"."""
     claims = [{"name": name, "statement": "so", "basis": "simulated" if name.startswith("sim") else "measured",
                "verdict": verdict, "reason": f"why {name}", "value": 1.5} for name, verdict in verdicts.items()]
-    found = {"experiments": [{"experiment": "made_up", "claims": claims}]}
+    found = {"experiments": [{"experiment": "synthetic", "claims": claims}]}
     (row,) = paper_claims.rows(found, frame_of([]) if frame is None else frame, [line(measured, simulated)])
     return row
 
@@ -53,7 +53,7 @@ class Verdicts(unittest.TestCase):
                 named = {f"claim-{number}": verdict for number, verdict in enumerate(verdicts)}
                 row = judged({"claims": list(named)}, **named)
                 self.assertEqual(row["measured"]["verdict"], expected)
-                self.assertEqual(row["simulated"], {"text": "not played", "verdict": "not judged", "claims": {}})
+                self.assertEqual(row["simulated"], {"text": "not simulated", "verdict": "not judged", "claims": {}})
 
     def test_measured_and_simulated_ones_never_mix(self):
         row = judged({"claims": ["one"]}, {"claims": ["sim"]}, one="holds", sim="does_not_hold")
@@ -65,7 +65,7 @@ class Verdicts(unittest.TestCase):
 
     def test_a_withdrawn_claim_is_known_and_judges_nothing(self):
         gone = {"name": "gone", "statement": "so", "verdict": "withdrawn", "reason": "another asks more"}
-        found = {"experiments": [{"experiment": "made_up", "claims": [], "withdrawn": [gone]}]}
+        found = {"experiments": [{"experiment": "synthetic", "claims": [], "withdrawn": [gone]}]}
         (row,) = paper_claims.rows(found, frame_of([]), [line({"claims": ["gone"]})])
         self.assertEqual((row["measured"]["verdict"], row["measured"]["text"]), ("not judged", "another asks more"))
 
@@ -80,7 +80,8 @@ class Verdicts(unittest.TestCase):
         self.assertEqual((row["measured"]["text"], paper_claims.verdict_text(row)), ("why one", "not judged"))
 
     def test_a_claim_that_is_not_there_is_an_error(self):
-        with self.assertRaisesRegex(paper_claims.PaperClaimsError, "made-up: no claim of the verdicts is called 'two'"):
+        with self.assertRaisesRegex(paper_claims.PaperClaimsError,
+                                    "synthetic: no claim of the verdicts is called 'two'"):
             judged({"claims": ["two"]}, one="holds")
 
     def test_a_name_that_two_claims_have_is_an_error(self):
@@ -158,7 +159,7 @@ class Figures(unittest.TestCase):
         self.assertIsNone(self.figure("speedups podm", simulated(), "measured"))
         self.assertIsNone(self.figure("speedups podm", measured))
 
-    def test_the_crossover_is_told_of_each_size(self):
+    def test_the_crossover_is_stated_for_each_size(self):
         self.assertEqual(self.figure("crossover", simulated()),
                          "between 32 and 256 (40 k), 32 and 256 (160 k) cores")
 
@@ -179,7 +180,7 @@ class Figures(unittest.TestCase):
                      for kept, verdict in ((3, "pass"), (2, "fail")))
         rows = [good, bad, synthetic.row(experiment="quality", verdicts=synthetic.PASSED)]
         self.assertEqual(self.figure("proofs fidelity", rows, "measured"),
-                         "fidelity proved of 1 of 2 that were asked for it")
+                         "fidelity proved of 1 of 2 that were checked")
         self.assertEqual(self.figure("topology", rows, "measured"),
                          "5 of 6 labels have the image's components, 6 its Euler number")
         self.assertIn("3 meshes on 1 core (3 M): ratios up to 1.92", self.figure("shapes", rows, "measured"))

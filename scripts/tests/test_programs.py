@@ -171,7 +171,7 @@ class Page(unittest.TestCase):
         self.assertIn("2 cores, equation 1", answers["scales"])
         self.assertNotIn("256", answers["scales"], "simulated cores are none of this machine's")
 
-    def test_a_busy_machine_is_said_before_any_answer_and_over_its_tables(self):
+    def test_a_busy_machine_is_stated_before_any_answer_and_over_its_tables(self):
         self.assertNotIn("processors busy", self.text)
         busy = synthetic.ROW["environment"] | {"busy_elsewhere": 0.8}
         with tempfile.TemporaryDirectory() as folder:
@@ -181,7 +181,7 @@ class Page(unittest.TestCase):
         self.assertLess(text.index(first), text.index('<section class="answer"'))
         self.assertTrue(others, "tables say it too")
 
-    def test_our_meshes_are_not_blamed_for_others(self):
+    def test_faults_of_others_are_not_counted_for_our_meshes(self):
         works = self.answers()["works"]
         self.assertIn("none refuted; trials: 1 failed", works)
         self.assertNotIn("tetgen", works)
@@ -192,7 +192,7 @@ class Page(unittest.TestCase):
         self.assertIn("No: 1 claims about our", works)
         self.assertIn("1 refuted", works)
 
-    def test_what_differs_is_told_and_what_is_open_is_folded(self):
+    def test_what_differs_is_listed_and_what_is_open_is_folded(self):
         holds = self.answers()["holds"]
         shown, folded = re.sub(r"<details>.*?</details>", "", holds, flags=re.DOTALL), re.findall(
             r"<details>.*?</details>", holds, re.DOTALL)

@@ -45,18 +45,18 @@ class Sizes(unittest.TestCase):
         self.assertEqual(list(table.index), [32, 256])
         for size, x in (("40", 40e3 ** (-1 / 3)), ("160", 160e3 ** (-1 / 3))):
             self.assertEqual(line[f"PDR.PODM, not fitted: {size}\N{NO-BREAK SPACE}k"], f"{0.6 * 256 - 10 * x:.1f}")
-        self.assertEqual(line["PDR.PODM, not fitted: 640\N{NO-BREAK SPACE}k"], "not played")
+        self.assertEqual(line["PDR.PODM, not fitted: 640\N{NO-BREAK SPACE}k"], "not simulated")
         self.assertEqual(line["PDR.PODM: paper"], "163.8")
-        self.assertEqual(line["PDR.PODM, not fitted: most over least"], "1.00")
+        self.assertEqual(line["PDR.PODM, not fitted: greatest over least"], "1.00")
         self.assertFalse([name for name in table if "M" in name.partition(":")[2]])
 
-    def test_the_dependence_on_the_size_is_said_of_two_sizes_and_more(self):
+    def test_the_dependence_on_the_size_is_stated_for_two_sizes_and_more(self):
         rows = [row for factor, size in zip((1, 2, 3), SIZES) for row in synthetic.simulated_size(
             size, lambda _, cores, factor=factor: factor * cores / 4)]
         said = simulated_sizes.depends_on_size(series_of(rows))
         self.assertIn("64, 128 and 192 times PODM on one core on 256 cores", said)
-        self.assertIn("not played", said)
-        self.assertIn("column is not fitted and depends on the cells a core: 64, 128 and 192 times",
+        self.assertIn("not simulated", said)
+        self.assertIn("column is not fitted and depends on the cells per core: 64, 128 and 192 times",
                       scales(outcome.make(frame_of(rows))))
         self.assertEqual(simulated_sizes.depends_on_size(series_of(rows_of(SIZES[:1]))), "")
 
@@ -74,7 +74,7 @@ class Sizes(unittest.TestCase):
     def test_rows_of_two_models_are_in_no_series_together(self):
         def of(model, sizes):
             for row in rows_of(sizes):
-                row["virtual"].update(machine={"name": "Made-up", "sha256": "ab" * 32}, **model)
+                row["virtual"].update(machine={"name": "Synthetic", "sha256": "ab" * 32}, **model)
                 yield row
 
         rows = [*of({}, SIZES[:1]), *of({"model_sha256": "cd" * 32}, SIZES[1:])]
@@ -89,8 +89,8 @@ class Sizes(unittest.TestCase):
                                                                            else 1), counts=(1, 128, 256))]
         claims = {one["claim"]: one["value"] for one in outcome.make(frame_of(rows)).verdicts["claims"]
                   if one["basis"] == "simulated"}
-        self.assertEqual(claims["crossover, 40\N{NO-BREAK SPACE}k cells a core"], [128, 256])
-        self.assertEqual(claims["crossover, 160\N{NO-BREAK SPACE}k cells a core"], [1, 128])
+        self.assertEqual(claims["crossover, 40\N{NO-BREAK SPACE}k cells per core"], [128, 256])
+        self.assertEqual(claims["crossover, 160\N{NO-BREAK SPACE}k cells per core"], [1, 128])
 
     def test_shares_without_a_hop_are_judged_number_of_cores_by_number_of_cores(self):
         published = paper.table2().loc[0]
@@ -162,13 +162,13 @@ class Ablation(unittest.TestCase):
         self.assertEqual(shown.loc["as they are", "PDR.PODM ahead on 256"], "does not hold")
         self.assertEqual(shown.loc["wake", "PDR.PODM ahead on 256"], "holds: doubled")
 
-    def test_what_lacks_rows_was_not_played(self):
+    def test_what_lacks_rows_was_not_simulated(self):
         part = [row for row in self.rows("wake=0") if row["threads"]["used"] < 256]
         shown = self.lines(self.rows(), part)
-        self.assertEqual(shown.loc["wake", "PDR.PODM ahead on 256"], "not played")
+        self.assertEqual(shown.loc["wake", "PDR.PODM ahead on 256"], "not simulated")
         self.assertEqual(shown.loc["wake", "PODM ahead on 128"], "survives")
         self.assertTrue(ablation.ablation(frame_of([synthetic.row()])).empty)
-        self.assertEqual(set(self.lines(part).loc["wake"].iloc[1:]), {"not played"}, "nothing to compare with")
+        self.assertEqual(set(self.lines(part).loc["wake"].iloc[1:]), {"not simulated"}, "nothing to compare with")
 
     def test_altered_and_unproved_rows_give_no_other_number(self):
         altered = list(self.rows("wake=0"))
@@ -195,7 +195,7 @@ class Machine(unittest.TestCase):
         self.assertEqual([round(one, 6) for one in table["deviation"]], [0.1, -0.2])
         self.assertEqual(list(deviation.means(table)["mean absolute deviation %"]), ["15.0"])
 
-    def test_losses_are_worker_microseconds_a_cell_and_what_no_cause_tells_is_outside(self):
+    def test_losses_are_worker_microseconds_per_cell_and_those_without_a_cause_are_outside(self):
         rows = list(synthetic.with_losses(rows_of(SIZES[:1]), compute=0.5, network_queue=0.2))
         frame = frame_of(rows)
         table = lost.lost(frame, scaling.weak_series(frame)).set_index(["algorithm", "cores"])
@@ -210,19 +210,19 @@ class Machine(unittest.TestCase):
         shown = lost.readable(lost.lost(frame, scaling.weak_series(frame)))
         self.assertEqual(list(shown)[-3:], ["computing", "odd cause", "outside refinement, or idle"])
 
-    def test_older_rows_tell_no_losses_and_no_machine(self):
+    def test_older_rows_record_no_losses_and_no_machine(self):
         made = outcome.make(frame_of(rows_of()))
         self.assertIn("virtual.worker_s", made.missing["lost"])
         self.assertFalse({"lost", "machine"} & set(made.tables))
         self.assertIn("deviation", made.figures)
 
-    def test_constants_are_told_by_machine(self):
+    def test_constants_are_listed_by_machine(self):
         rows = list(rows_of(SIZES[:1]))
         for one in rows:
-            one["virtual"]["machine"] = {"name": "Made-up", "path": "made-up.toml", "sha256": "ab" * 32,
+            one["virtual"]["machine"] = {"name": "Synthetic", "path": "synthetic.toml", "sha256": "ab" * 32,
                                          "constants": {"core_speed": 0.15, "retries": 0.0}}
         (line,) = machine.machine(frame_of(rows)).to_dict("records")
-        self.assertEqual((line["name"], line["rows"]), ("Made-up", len(rows)))
+        self.assertEqual((line["name"], line["rows"]), ("Synthetic", len(rows)))
         self.assertEqual(line["constants"], "core_speed = 0.15, retries = 0")
 
     def test_limits_are_those_of_the_readme(self):
@@ -300,7 +300,7 @@ class AtHome(unittest.TestCase):
 
 class Validation(unittest.TestCase):
     def rows(self, algorithm="podm", slower=1.2):
-        sizes = {"used": {"radius_mm": 3.0, "delta_mm": 1.5}, "input": {"name": "made-up"}, "cells": 1_000_000,
+        sizes = {"used": {"radius_mm": 3.0, "delta_mm": 1.5}, "input": {"name": "synthetic"}, "cells": 1_000_000,
                  "overhead_s": {"contention": 1.0, "begging": 0.0, "rollback": 0.5}}
         for cores in (1, 2):
             seconds = {"transform": 2.0, "refine": 24.0 / cores}

@@ -21,17 +21,17 @@ class Solvers(unittest.TestCase):
     def test_each_mesh_has_a_line_with_its_iterations(self):
         table = solvers.solvers(frame_of(ROWS)).set_index(["image", "variant"])
         found = table["poisson_jacobi"].to_dict()
-        self.assertEqual(found, {("made-up", solvers.NONE): 200, ("made-up", solvers.MOVED): 180,
-                                 ("made-up", solvers.BOTH): 140, ("made-up", "TetGen"): 160,
+        self.assertEqual(found, {("synthetic", solvers.NONE): 200, ("synthetic", solvers.MOVED): 180,
+                                 ("synthetic", solvers.BOTH): 140, ("synthetic", "TetGen"): 160,
                                  ("other", solvers.NONE): 300})
-        self.assertEqual(table.loc[("made-up", solvers.NONE), "poisson_amg"], 20)
+        self.assertEqual(table.loc[("synthetic", solvers.NONE), "poisson_amg"], 20)
 
     def test_angles_beyond_the_bounds_are_counted_per_million_cells(self):
         table = solvers.solvers(frame_of(ROWS)).set_index(["image", "variant"])
         columns = ["small_per_million", "large_per_million"]
-        self.assertEqual(list(table.loc[("made-up", solvers.NONE), columns]), [3e6, 3e6])
-        self.assertEqual(list(table.loc[("made-up", solvers.MOVED), columns]), [3e6, 0])
-        self.assertEqual(list(table.loc[("made-up", solvers.BOTH), columns]), [0, 0])
+        self.assertEqual(list(table.loc[("synthetic", solvers.NONE), columns]), [3e6, 3e6])
+        self.assertEqual(list(table.loc[("synthetic", solvers.MOVED), columns]), [3e6, 0])
+        self.assertEqual(list(table.loc[("synthetic", solvers.BOTH), columns]), [0, 0])
 
     def test_rows_that_failed_or_were_not_solved_are_left_out(self):
         rows = [synthetic.row(), synthetic.solved(200, status="unmet"), synthetic.solved(200, warmup=True)]
@@ -39,7 +39,7 @@ class Solvers(unittest.TestCase):
         self.assertIsNone(solvers.figure(frame_of(rows)))
         self.assertIsNone(solvers.figure(frame_of([synthetic.row()])))
 
-    def test_other_meshers_count_and_their_misses_are_told(self):
+    def test_other_meshers_count_and_their_misses_are_reported(self):
         rows = [synthetic.solved(160, mesher="tetgen", status="unmet"), synthetic.solved(200)]
         table = solvers.solvers(frame_of(rows))
         self.assertEqual(dict(zip(table["variant"], table["misses"])), {solvers.NONE: "", "TetGen": "delaunay"})
@@ -53,7 +53,7 @@ class Solvers(unittest.TestCase):
     def test_bars_are_iterations_by_image_and_preconditioner(self):
         figure = solvers.figure(frame_of(ROWS))
         titles = [axes.get_title() for axes in figure.axes]
-        self.assertEqual(titles, ["made-up: Jacobi", "other: Jacobi", "made-up: algebraic multigrid",
+        self.assertEqual(titles, ["synthetic: Jacobi", "other: Jacobi", "synthetic: algebraic multigrid",
                                   "other: algebraic multigrid"])
         heights = {bar.get_height() for bar in figure.axes[0].patches}
         self.assertEqual(heights, {200, 180, 140, 160})

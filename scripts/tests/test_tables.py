@@ -54,7 +54,7 @@ class Tables(unittest.TestCase):
                                     phases_s={"refine": 9.0, "perturb": seconds - 1, "optimize": 1.0},
                                     quality={"min_dihedral_deg": 8 + repeat, "max_dihedral_deg": 160 + threads})
 
-    def test_slivers_are_told_by_image_with_the_gain_of_two_threads(self):
+    def test_slivers_are_listed_by_image_with_the_gain_of_two_threads(self):
         head, line = self.lines("slivers", list(self.slivers()))
         found = dict(zip(head, line))
         self.assertEqual((found["M cells/s, one thread"], found["gain on two threads"]), ("0.40", "1.50"))

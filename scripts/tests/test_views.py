@@ -104,7 +104,7 @@ class Cut(unittest.TestCase):
             shown = cut.shown_cells(mesh, None, names, hidden)
             numpy.testing.assert_array_equal(shown, numpy.flatnonzero(mesh.labels == 2))
 
-    def test_what_is_no_label_or_leaves_nothing_is_told(self):
+    def test_what_is_no_label_or_leaves_nothing_is_reported(self):
         mesh = box()
         for plane, names, hidden, words in (
             (None, ["rigt half"], [], "--labels: no label .* called 'rigt half', did you mean 'right half'"),

@@ -8,7 +8,7 @@ import paths  # noqa: F401
 from figures import whatif
 from test_programs import call
 
-MACHINE = "name = 'Made-up'\n[processor]\nsockets_per_node = 2\ncores_per_socket = 8\n[network]\nnodes = 16\n"
+MACHINE = "name = 'Synthetic'\n[processor]\nsockets_per_node = 2\ncores_per_socket = 8\n[network]\nnodes = 16\n"
 # On 256 cores PDR.PODM keeps 70 % efficiency. PODM keeps 90 % up to LAST cores, with no more cells per second beyond.
 # PODM at home has the efficiency HOME. LACKING, an (algorithm, cores), has no row.
 BENCH = """#!/usr/bin/python3
@@ -61,7 +61,7 @@ class WhatIf(unittest.TestCase):
                 self.assertNotIn("progress", done.stdout)
                 self.assertGreater((self.folder / "out" / "whatif.png").stat().st_size, 10_000)
 
-    def test_the_most_cores_tell_all_rates_the_greatest_first(self):
+    def test_the_most_cores_list_all_rates_the_greatest_first(self):
         said = self.ask(home=0.8).stdout
         self.assertIn("on 256 cores: podm-home 20.5 (80 %), pdr-podm 17.9 (70 %), podm 11.5 (45 %)", said)
         self.assertNotIn("No verified run", said)
@@ -74,7 +74,7 @@ class WhatIf(unittest.TestCase):
                 done = self.ask(lacking=lacking)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn(words, done.stdout)
-                self.assertIn("No verified run of %s with as many cells a core on %d:" % lacking, done.stdout)
+                self.assertIn("No verified run of %s with this number of cells per core on %d:" % lacking, done.stdout)
 
     def test_trials_are_of_all_algorithms_on_one_to_all_cores(self):
         self.ask()

@@ -21,17 +21,17 @@ def hidden_display():
     """Starts a display for this process only: it requires a cookie. The display ends with this process, even if the
     process is killed. Raises MeshError if the server is missing."""
     if not os.access(SERVER, os.X_OK):
-        raise MeshError(f"view: {SERVER} is not there; install Debian's xvfb")
+        raise MeshError(f"view: {SERVER} is not installed; install Debian's xvfb")
     with tempfile.TemporaryDirectory() as folder:
         cookie = Path(folder) / "cookie"
         cookie.write_bytes(_authority(secrets.token_bytes(16)))
-        told, tells = os.pipe()
+        number_reader, number_writer = os.pipe()
         server = subprocess.Popen(
-            [SERVER, "-displayfd", str(tells), "-screen", "0", "64x64x24", "-nolisten", "tcp", "-auth", cookie],
-            pass_fds=[tells], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_end_with_parent)
-        os.close(tells)
+            [SERVER, "-displayfd", str(number_writer), "-screen", "0", "64x64x24", "-nolisten", "tcp", "-auth", cookie],
+            pass_fds=[number_writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_end_with_parent)
+        os.close(number_writer)
         try:
-            with open(told) as pipe:  # the server chooses a free number
+            with open(number_reader) as pipe:  # the server chooses a free number
                 number = pipe.readline().strip()
             if not number:
                 raise MeshError(f"view: {SERVER} does not start")

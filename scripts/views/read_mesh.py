@@ -11,7 +11,7 @@ def read_mesh(path):
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        raise MeshError(f"{path}: no mesh file that can be shown; convert it to one of {', '.join(READERS)}")
+        raise MeshError(f"{path}: not a mesh file that can be shown; convert it to one of {', '.join(READERS)}")
     try:
         with open(path, "rb"):
             pass
@@ -21,7 +21,7 @@ def read_mesh(path):
     if len(mesh.cells) == 0:
         raise MeshError(f"{path}: no tetrahedra")
     if mesh.cells.min() < 0 or mesh.cells.max() >= len(mesh.points):
-        raise MeshError(f"{path}: a tetrahedron has a vertex that is not there")
+        raise MeshError(f"{path}: a tetrahedron has a vertex that does not exist")
     if not numpy.isfinite(mesh.points).all():
         raise MeshError(f"{path}: a coordinate is not finite")
     return mesh

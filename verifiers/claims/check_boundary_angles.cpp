@@ -42,7 +42,7 @@ bool is_boundary(const Mesh& mesh, FacetId f, FacetId mirror) {
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options) {
   Tally empty;
   empty.bins.emplace_back("boundary_facet_angle", "degrees", 0, 180, 72);
-  const Constant sine2(squared_sine(typed_decimal(std::min(options.angle_bound_deg, 90.0))));
+  const Constant sine2(squared_sine(decimal_as_typed(std::min(options.angle_bound_deg, 90.0))));
   const Tally tally =
       tally_over(adjacency.mirror.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
         const auto f = static_cast<FacetId>(i);

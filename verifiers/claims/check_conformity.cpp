@@ -55,7 +55,7 @@ Tally check_facets(const Mesh& mesh, const std::vector<FacetId>& open_facets) {
   tally.num_checked = facets.size();
   for (std::size_t i = 0; i + 1 < facets.size(); ++i) {
     if (facets[i].points != facets[i + 1].points) continue;
-    tally.violation({.statement = "facets at the same place are one facet",
+    tally.violation({.statement = "facets with the same coordinates are one facet",
                      .cells = {facets[i].id / 4, facets[i + 1].id / 4},
                      .points = {facets[i].points.begin(), facets[i].points.end()}});
   }
@@ -152,7 +152,8 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
     for (const VertexId v : vertices_of(mesh, f)) vertices.push_back(v);
   add("doubled_facets", check_facets(mesh, open_facets));
   add("doubled_vertices",
-      check_vertices(mesh, std::move(vertices), "vertices of boundary facets at the same place are one"));
+      check_vertices(mesh, std::move(vertices),
+                     "vertices of boundary facets with the same coordinates are one vertex"));
   std::string about = fmt::format("{} facets with one cell", open_facets.size());
   if (schedule != nullptr) {
     const LeafBoundaries boundaries(mesh, *schedule);
@@ -162,7 +163,7 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
       if (is_used[v] && boundaries.has(v)) at_boundary.push_back(v);
     add("doubled_vertices_at_leaf_boundaries",
         check_vertices(mesh, std::move(at_boundary),
-                       "vertices at a leaf boundary at the same place are one"));
+                       "vertices at a leaf boundary with the same coordinates are one vertex"));
     const Crossings crossings = count_crossings(mesh, adjacency, boundaries);
     details["facets_at_leaf_boundaries"] = crossings.facets;
     details["facets_at_leaf_boundaries_with_one_cell"] = crossings.with_one_cell;

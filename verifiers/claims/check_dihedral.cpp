@@ -62,9 +62,9 @@ class CellCheck {
   explicit CellCheck(const AngleBounds& bounds)
       : has_least_(bounds.least_deg),
         has_largest_(bounds.largest_deg),
-        least_(Rational(1) - squared_sine(typed_decimal(bounds.least_deg.value_or(0)))),
+        least_(Rational(1) - squared_sine(decimal_as_typed(bounds.least_deg.value_or(0)))),
         largest_(Rational(1) -
-                 squared_sine(Rational(180) - typed_decimal(bounds.largest_deg.value_or(180)))) {}
+                 squared_sine(Rational(180) - decimal_as_typed(bounds.largest_deg.value_or(180)))) {}
 
   /// Returns the statement that the cell breaks, or null.
   const char* broken_by(const CellPoints& p, std::uint64_t& num_exact) const {

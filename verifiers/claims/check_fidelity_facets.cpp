@@ -23,10 +23,11 @@ InterfaceFacets::InterfaceFacets(const Mesh& mesh, const Adjacency& adjacency, c
   parallel_ranges(points_.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) points_[i] = frame.to_world(mesh.vertices[i]);
   });
-  const CellLabelPlaces places(mesh);
-  for (const Side& side : find_sides(mesh, adjacency, places, threads))
+  const CellLabelIndices label_indices(mesh);
+  for (const Side& side : find_sides(mesh, adjacency, label_indices, threads))
     if (side.across < side.label)
-      facets_.push_back({side.vertices, {places.labels[side.label], places.labels[side.across]}, side.cell});
+      facets_.push_back(
+          {side.vertices, {label_indices.labels[side.label], label_indices.labels[side.across]}, side.cell});
 }
 
 std::array<Point, 3> InterfaceFacets::triangle(std::uint32_t i) const {

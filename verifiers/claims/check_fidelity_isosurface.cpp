@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kVoxelError = 1e-5;  // of bisection
 constexpr double kSameWeight = 1e-4;  // labels whose weights are this close meet at a point
-constexpr double kLittleWeight = 0.02, kLittleBeyond = 1.01;
+constexpr double kWeightOvershoot = 0.02, kOvershoot = 1.01;
 constexpr int kMaxProjections = 3;
 // A step along an axis is tried unless it is longer than the distance found by this factor.
 constexpr double kStepSquared = 4 * 4;
@@ -108,7 +108,7 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   best.squared = squared_distance(p, known);
   Point target;
   if (project(p, p, region, target)) try_segment(p, target, region, best);
-  try_segment(p, along(p, known, kLittleBeyond), region, best);  // on `known` itself there is a tie
+  try_segment(p, along(p, known, kOvershoot), region, best);  // on `known` itself there is a tie
   // The isosurface of flat voxels may pass near without a midpoint near: search along each axis.
   for (const Point& step : steps_) {
     const Point neighbor{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
@@ -124,7 +124,7 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
 // nearer than the best point by more than a thousandth.
 bool IsosurfaceDistance::try_segment(const Point& p, const Point& end, const Region& region,
                                      Answer& best) const {
-  const double useful = kLittleBeyond * std::sqrt(best.squared / squared_distance(p, end));
+  const double useful = kOvershoot * std::sqrt(best.squared / squared_distance(p, end));
   const Point last = useful < 1 ? along(p, end, useful) : end;
   const Point u = frame_.world_to_voxels(p), v = frame_.world_to_voxels(last);
   const std::uint32_t side = region.side(label_function_.label_at(u));
@@ -161,7 +161,7 @@ bool IsosurfaceDistance::project(const Point& p, const Point& at, const Region& 
   if (!(squared > 0)) return false;
   const double value = weights.weights[first] - weights.weights[second] + g[0] * (p[0] - at[0]) +
                        g[1] * (p[1] - at[1]) + g[2] * (p[2] - at[2]);
-  const double beyond = 2 * value + std::copysign(kLittleWeight, value);
+  const double beyond = 2 * value + std::copysign(kWeightOvershoot, value);
   for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = p[axis] - beyond / squared * g[axis];
   return true;
 }

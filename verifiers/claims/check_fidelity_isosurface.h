@@ -1,11 +1,11 @@
 // Distance from a point to the image's isosurface (image/label_function.h), in the world's mm.
 //
 // Between the centers of two voxels of different labels that share a face, only these two labels have weight.
-// The label changes midway, or in a smoothed image where their strengths place it. These midpoints are the
-// known points of the isosurface: one lies in each block that the isosurface passes through. From the nearest
-// midpoint a search goes on to nearer points. If the ends of a segment have different labels, a point of the
-// isosurface lies between them, and bisection finds it. The search tries the segment to the midpoint, a
-// voxel's length along each axis, and the normals of the surface found. Every answer is a point of the
+// The label changes midway, or in a smoothed image where their voxel weights place it. These midpoints are
+// the known points of the isosurface: one lies in each block that the isosurface passes through. From the
+// nearest midpoint a search goes on to nearer points. If the ends of a segment have different labels, a point
+// of the isosurface lies between them, and bisection finds it. The search tries the segment to the midpoint,
+// a voxel's length along each axis, and the normals of the surface found. Every answer is a point of the
 // isosurface to 1e-5 of a voxel. The distance is therefore never too small; it may be slightly too large.
 #pragma once
 

@@ -2,7 +2,7 @@
 //   Statements  First, each cell's label is the image's label at its circumcenter: the label with the
 //               greatest trilinear weight among the eight voxels around that point, the smaller label if
 //               there is a tie, background (0) outside the grid. In a smoothed image, weights take the
-//               voxels' strengths into account (image/smoothing.h). The flat cells of a mesh that does not
+//               voxel weights into account (image/smoothing.h). The flat cells of a mesh that does not
 //               claim to be Delaunay have their circumcenters far away. For such a mesh, the label is the
 //               image's at the cell's centroid, or a voxel of that label is within reach. The reach is a
 //               voxel's diagonal plus the longer of 2 delta (--delta) and another diagonal; interfaces of
@@ -15,8 +15,8 @@
 //               the written coordinates. A cell with another label than that one is still right if its label
 //               wins within the bound: a mesher computes a circumcenter in rounded arithmetic, possibly in
 //               other coordinates than the file's. Such cells are counted ("within_rounding") and not judged.
-//               The bound allows for slopes of 1 per voxel; where strengths of S make them as small, it
-//               forgives up to 1/S times the rounding. Strengths are taken to be right: smoothing.cpp
+//               The bound allows for slopes of 1 per voxel; where voxel weights of S make them as small, it
+//               forgives up to 1/S times the rounding. Voxel weights are taken to be right: smoothing.cpp
 //               computes them and is tested against its definition.
 //   Cost        Linear in the cells, and a pass over the voxels; 24 bytes per vertex, 8 per voxel of the
 //               mesh's box.

@@ -93,11 +93,11 @@ CircumcenterLocator::CircumcenterLocator(const Mesh& mesh, const Image& image, c
     // 2^-50 also covers the rounding of points_ and of the edges taken from them.
     const double error = (moved[axis] + 0x1p-50 * voxels[axis]) * image.spacing[axis];
     point_error_mm_ = std::max(point_error_mm_, error);
-    voxels_a_mm_[axis] = 1 / image.spacing[axis];
-    squared += voxels_a_mm_[axis] * voxels_a_mm_[axis];
+    voxels_per_mm_[axis] = 1 / image.spacing[axis];
+    squared += voxels_per_mm_[axis] * voxels_per_mm_[axis];
     voxel_rounding_ += 0x1p-50 * (voxels[axis] + 1);
   }
-  l1_voxels_a_mm_ = std::sqrt(squared);
+  l1_voxels_per_mm_ = std::sqrt(squared);
 }
 
 LocatedPoint CircumcenterLocator::circumcenter(CellId cell) const {
@@ -110,9 +110,9 @@ LocatedPoint CircumcenterLocator::circumcenter(CellId cell) const {
     return located;
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
-    located.voxels[axis] = (origin[axis] + s.center[axis]) * voxels_a_mm_[axis];
-  const double reach = 0x1p-50 * length(s.center) * l1_voxels_a_mm_;  // rounding of the sum and its scaling
-  located.error = error_mm(s, point_error_mm_) * l1_voxels_a_mm_ + voxel_rounding_ + reach;
+    located.voxels[axis] = (origin[axis] + s.center[axis]) * voxels_per_mm_[axis];
+  const double reach = 0x1p-50 * length(s.center) * l1_voxels_per_mm_;  // rounding of the sum and its scaling
+  located.error = error_mm(s, point_error_mm_) * l1_voxels_per_mm_ + voxel_rounding_ + reach;
   return located;
 }
 
@@ -121,9 +121,9 @@ LocatedPoint CircumcenterLocator::centroid(CellId cell) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double sum = 0;
     for (const VertexId v : mesh_.cells[cell]) sum += points_[v][axis];
-    located.voxels[axis] = sum / 4 * voxels_a_mm_[axis];
+    located.voxels[axis] = sum / 4 * voxels_per_mm_[axis];
   }
-  located.error = std::sqrt(3.0) * point_error_mm_ * l1_voxels_a_mm_ + 4 * voxel_rounding_;
+  located.error = std::sqrt(3.0) * point_error_mm_ * l1_voxels_per_mm_ + 4 * voxel_rounding_;
   return located;
 }
 

@@ -45,10 +45,10 @@ class CircumcenterLocator {
  private:
   const Mesh& mesh_;
   std::vector<Point> points_;
-  Point voxels_a_mm_{};
-  double point_error_mm_ = 0;  // t
-  double l1_voxels_a_mm_ = 0;  // bound on the sum of voxel coordinates of a vector of 1 mm
-  double voxel_rounding_ = 0;  // of the sum with v0 and the conversion to voxels
+  Point voxels_per_mm_{};
+  double point_error_mm_ = 0;    // t
+  double l1_voxels_per_mm_ = 0;  // bound on the sum of voxel coordinates of a vector of 1 mm
+  double voxel_rounding_ = 0;    // of the sum with v0 and the conversion to voxels
 };
 
 /// Returns the label at the circumcenter of the coordinates in the file, by rational arithmetic; none if the

@@ -32,7 +32,7 @@ ClaimResult check_radius_edge(const Mesh& mesh, const Options& options) {
   Tally empty;
   empty.bins.emplace_back("radius_edge_ratio", "", 0.6, 2.0, 56);
   empty.bins.push_back(bins_of_degrees("dihedral_angle"));
-  const Rational bound = typed_decimal(options.radius_edge_bound);
+  const Rational bound = decimal_as_typed(options.radius_edge_bound);
   const Constant squared_bound(bound * bound);
   const Tally tally = tally_over(mesh.cells.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);

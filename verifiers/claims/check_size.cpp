@@ -170,7 +170,7 @@ std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, con
   const bool needs_image = !options.size_near.empty() || options.grade;
   if (needs_image && image == nullptr) return "no image given (--image), which --size-near and --grade need";
   if (mesh.space != Space::kVoxel) return std::nullopt;
-  if (sizes != nullptr) return "coordinates are voxel indices, of another image than the sizes' perhaps";
+  if (sizes != nullptr) return "coordinates are voxel indices, possibly of another image than the size image";
   if (needs_image) return "coordinates are voxel indices, and bounds near interfaces and grades are in mm";
   return std::nullopt;
 }
@@ -207,7 +207,7 @@ ClaimResult result_of(const Tally& tally, const SizeBounds& bounds, const Option
   result.reason = fmt::format("{} of {} cells over their bound; largest circumradius {:.6g} mm",
                               result.num_violations, result.num_checked, result.histograms[0].maximum);
   if (const auto& graded = bounds.graded()) {
-    result.method += "; what grows in doubles";
+    result.method += "; graded bounds in doubles";
     result.reason +=
         fmt::format("; grade to within {:.3g} mm of voxels' bounds", graded->slack_of_voxels_mm());
     if (!bounds.near().empty())

@@ -40,7 +40,7 @@ Tally check_references(const Mesh& mesh, int threads) {
     if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) return;
     t.violation({.statement = "coordinates are finite", .vertices = {static_cast<VertexId>(v)}});
   }));
-  if (mesh.cells.empty()) tally.violation({.statement = "there are cells"});
+  if (mesh.cells.empty()) tally.violation({.statement = "the mesh has cells"});
   return tally;
 }
 
@@ -160,7 +160,7 @@ std::string sentence(const ClaimResult& result, const Mesh& mesh, bool is_left_h
                        mesh.vertices.size(), result.num_warnings);
   if (is_left_handed && result.num_violations == mesh.cells.size())
     return "all cells are negatively oriented: the mesh is sound but left-handed";
-  return fmt::format("{} violations, first: not so that {}", result.num_violations,
+  return fmt::format("{} violations, the first: violated: {}", result.num_violations,
                      result.worst[0].statement);
 }
 

@@ -67,7 +67,8 @@ const char* statement(FindingKind kind) {
 
 class Report {
  public:
-  Report(const Mesh& mesh, const CellLabelPlaces& places) : mesh_(mesh), places_(places) {}
+  Report(const Mesh& mesh, const CellLabelIndices& label_indices)
+      : mesh_(mesh), label_indices_(label_indices) {}
 
   void add(const Finding& finding) {
     const bool is_violation = finding.kind == FindingKind::kUnbalancedEdge;
@@ -79,7 +80,7 @@ class Report {
     for (const VertexId v : finding.vertices) witness.points.push_back(mesh_.vertices[v]);
     witness.value = static_cast<double>(finding.cells.size());
     witness.severity = is_violation ? 3 : finding.is_on_triple_line ? 0 : 1;
-    witness.label = places_.labels[finding.label];
+    witness.label = label_indices_.labels[finding.label];
     witnesses_.add(witness);
   }
 
@@ -105,7 +106,7 @@ class Report {
 
  private:
   const Mesh& mesh_;
-  const CellLabelPlaces& places_;
+  const CellLabelIndices& label_indices_;
   WorstWitnesses witnesses_;
   std::set<CellId> bad_cells_;
 };
@@ -131,12 +132,13 @@ std::uint64_t judge_listed(const Mesh& mesh, const ListedFacets& listed, Report&
   return faults;
 }
 
-nlohmann::json labels_table(const Mesh& mesh, const CellLabelPlaces& places, const BoundaryFindings& boundary,
-                            const std::vector<MeshTopology>& topology, const ImageTopology* image) {
+nlohmann::json labels_table(const Mesh& mesh, const CellLabelIndices& label_indices,
+                            const BoundaryFindings& boundary, const std::vector<MeshTopology>& topology,
+                            const ImageTopology* image) {
   auto table = nlohmann::json::array();
-  for (LabelPlace place = 1; place < places.labels.size(); ++place) {
-    auto row = to_json(boundary.of_label[place], topology[place]);
-    const LabelValue label = places.labels[place];
+  for (LabelIndex index = 1; index < label_indices.labels.size(); ++index) {
+    auto row = to_json(boundary.of_label[index], topology[index]);
+    const LabelValue label = label_indices.labels[index];
     row["label"] = label;
     if (const auto name = mesh.label_names.find(label); name != mesh.label_names.end())
       row["name"] = name->second;
@@ -156,24 +158,25 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
   ClaimResult result;
   result.claim = "surface";
   result.method = "combinatorial, on vertex ids";
-  const CellLabelPlaces places(mesh);
+  const CellLabelIndices label_indices(mesh);
   const int threads = num_threads(options.threads);
-  const std::vector<Side> sides = find_sides(mesh, adjacency, places, threads);
+  const std::vector<Side> sides = find_sides(mesh, adjacency, label_indices, threads);
   if (sides.empty()) {
     result.reason = "the mesh has no cells of a label";
     return result;
   }
   const SidesOfVertex sides_of(sides, mesh.vertices.size());
   const BoundaryFindings boundary =
-      inspect_boundary(sides, sides_of, mesh.vertices.size(), places.labels.size(), threads);
-  const std::vector<MeshTopology> topology = find_mesh_topology(mesh, adjacency, places, boundary, threads);
+      inspect_boundary(sides, sides_of, mesh.vertices.size(), label_indices.labels.size(), threads);
+  const std::vector<MeshTopology> topology =
+      find_mesh_topology(mesh, adjacency, label_indices, boundary, threads);
 
-  Report report(mesh, places);
+  Report report(mesh, label_indices);
   for (const Finding& finding : boundary.findings) report.add(finding);
   BoundaryCounts sum;
   for (const BoundaryCounts& counts : boundary.of_label) sum.add(counts);
   const std::uint64_t listed_faults =
-      judge_listed(mesh, inspect_listed_facets(mesh, places, sides, sides_of), report, result);
+      judge_listed(mesh, inspect_listed_facets(mesh, label_indices, sides, sides_of), report, result);
   result.num_checked = sides.size();
   result.num_violations = sum.unbalanced_edges + listed_faults;
   result.num_warnings += sum.non_manifold_edges + sum.non_manifold_edges_on_triple_lines +
@@ -183,7 +186,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
   std::optional<ImageTopology> image_topology;
   if (image != nullptr) image_topology = find_topology(*image, threads);
   result.details["labels"] =
-      labels_table(mesh, places, boundary, topology, image_topology ? &*image_topology : nullptr);
+      labels_table(mesh, label_indices, boundary, topology, image_topology ? &*image_topology : nullptr);
   result.details["all"] = to_json(boundary.of_label[kAllLabels], topology[kAllLabels]);
   if (image_topology) result.details["all"]["image"] = to_json(image_topology->all);
   result.details["connectivity"] =
@@ -192,7 +195,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
       "{} boundary edges of {} labels not closed and oriented, {} listed facets wrong; non-manifold edges {} "
       "+ "
       "{} on triple lines, vertices {} + {}",
-      sum.unbalanced_edges, places.labels.size() - 1, listed_faults, sum.non_manifold_edges,
+      sum.unbalanced_edges, label_indices.labels.size() - 1, listed_faults, sum.non_manifold_edges,
       sum.non_manifold_edges_on_triple_lines, sum.non_manifold_vertices,
       sum.non_manifold_vertices_on_triple_lines);
   result.verdict = verdict_on(result.num_violations);

@@ -14,14 +14,14 @@ constexpr std::size_t kMaxFindings = 100;  // of each kind that is not a violati
 
 // Around a vertex v, each side with v is an arc from the vertex after v to the vertex before v.
 struct Arc {
-  LabelPlace set;  // the label whose boundary it is on
+  LabelIndex set;  // the label whose boundary it is on
   VertexId from, to;
   std::uint32_t side;
 };
 
 // One end of an arc.
 struct End {
-  LabelPlace set;
+  LabelIndex set;
   VertexId vertex;
   std::uint32_t arc;
   bool is_from;
@@ -64,7 +64,7 @@ class VertexInspector {
     num_labels_ = count_distinct(labels_);
   }
 
-  static std::size_t count_distinct(std::vector<LabelPlace>& labels) {
+  static std::size_t count_distinct(std::vector<LabelIndex>& labels) {
     std::sort(labels.begin(), labels.end());
     return static_cast<std::size_t>(std::unique(labels.begin(), labels.end()) - labels.begin());
   }
@@ -76,7 +76,7 @@ class VertexInspector {
 
   // Inspects all edges from v in the boundary of one set. Returns the position after them.
   std::size_t inspect_set(VertexId v, std::size_t first) {
-    const LabelPlace set = ends_[first].set;
+    const LabelIndex set = ends_[first].set;
     bool has_only_manifold_edges = true;
     std::size_t last = first;
     while (last < ends_.size() && ends_[last].set == set) {
@@ -96,7 +96,7 @@ class VertexInspector {
     return last;
   }
 
-  void inspect_edge(VertexId v, LabelPlace set, std::size_t begin, std::size_t end, std::size_t outward) {
+  void inspect_edge(VertexId v, LabelIndex set, std::size_t begin, std::size_t end, std::size_t outward) {
     BoundaryCounts& counts = findings_.of_label[set];
     const bool is_balanced = 2 * outward == end - begin;
     if (is_balanced && end - begin == 2) return;
@@ -125,7 +125,7 @@ class VertexInspector {
     return count_distinct(edge_labels_);
   }
 
-  void inspect_fans(VertexId v, LabelPlace set, std::size_t begin, std::size_t end) {
+  void inspect_fans(VertexId v, LabelIndex set, std::size_t begin, std::size_t end) {
     std::size_t fans = 0;
     for (std::size_t e = begin; e < end; ++e)
       fans += ends_[e].is_from && fan(ends_[e].arc) == ends_[e].arc ? 1 : 0;
@@ -150,37 +150,37 @@ class VertexInspector {
   BoundaryFindings& findings_;
   std::vector<Arc> arcs_;
   std::vector<End> ends_;
-  std::vector<LabelPlace> labels_, edge_labels_;
+  std::vector<LabelIndex> labels_, edge_labels_;
   std::vector<std::uint32_t> fans_;
   std::size_t num_labels_ = 0, num_kept_ = 0;
 };
 
 }  // namespace
 
-CellLabelPlaces::CellLabelPlaces(const Mesh& mesh) : labels{0}, of_cell(mesh.cells.size(), 1) {
+CellLabelIndices::CellLabelIndices(const Mesh& mesh) : labels{0}, of_cell(mesh.cells.size(), 1) {
   if (mesh.cell_labels.size() != mesh.cells.size()) {
     labels.push_back(1);
     return;
   }
-  std::unordered_map<LabelValue, LabelPlace> places;
-  for (const LabelValue label : mesh.cell_labels) places.emplace(label, 0);
-  places.erase(0);
-  for (const auto& [label, place] : places) labels.push_back(label);
+  std::unordered_map<LabelValue, LabelIndex> index_of;
+  for (const LabelValue label : mesh.cell_labels) index_of.emplace(label, 0);
+  index_of.erase(0);
+  for (const auto& [label, index] : index_of) labels.push_back(label);
   std::sort(labels.begin() + 1, labels.end());
-  for (LabelPlace place = 0; place < labels.size(); ++place) places[labels[place]] = place;
-  for (std::size_t c = 0; c < of_cell.size(); ++c) of_cell[c] = places.find(mesh.cell_labels[c])->second;
+  for (LabelIndex index = 0; index < labels.size(); ++index) index_of[labels[index]] = index;
+  for (std::size_t c = 0; c < of_cell.size(); ++c) of_cell[c] = index_of.find(mesh.cell_labels[c])->second;
 }
 
-std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency, const CellLabelPlaces& places,
-                             int threads) {
+std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency,
+                             const CellLabelIndices& label_indices, int threads) {
   std::vector<std::vector<Side>> parts(static_cast<std::size_t>(threads));
   parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
     for (std::size_t c = begin; c < end; ++c) {
-      const LabelPlace label = places.of_cell[c];
+      const LabelIndex label = label_indices.of_cell[c];
       if (label == 0) continue;
       for (std::size_t i = 0; i < 4; ++i) {
         const FacetId mirror = adjacency.mirror[4 * c + i];
-        const LabelPlace across = mirror == kNone ? 0 : places.of_cell[mirror / 4];
+        const LabelIndex across = mirror == kNone ? 0 : label_indices.of_cell[mirror / 4];
         if (across == label) continue;
         const auto& v = mesh.cells[c];
         const auto& f = kFacetVertices[i];  // seen from inside

@@ -11,26 +11,26 @@
 namespace podm::verify {
 
 /// Labels by their position among those of the mesh, ascending; 0 is the background: label 0 and outside.
-using LabelPlace = std::uint32_t;
+using LabelIndex = std::uint32_t;
 
-struct CellLabelPlaces {
+struct CellLabelIndices {
   std::vector<LabelValue> labels;  ///< labels[0] = 0
-  std::vector<LabelPlace> of_cell;
+  std::vector<LabelIndex> of_cell;
 
   /// A mesh without labels counts as a mesh of a single label, 1.
-  explicit CellLabelPlaces(const Mesh& mesh);
+  explicit CellLabelIndices(const Mesh& mesh);
 };
 
 /// A facet seen from a cell, with another label on its other side. `vertices` turn counter-clockwise seen
 /// from outside the cell, if the cell is positive.
 struct Side {
   std::array<VertexId, 3> vertices{};
-  LabelPlace label = 0, across = 0;
+  LabelIndex label = 0, across = 0;
   CellId cell = 0;
 };
 
-std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency, const CellLabelPlaces& places,
-                             int threads);
+std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency,
+                             const CellLabelIndices& label_indices, int threads);
 
 /// The sides that have each vertex, ascending.
 class SidesOfVertex {
@@ -59,16 +59,16 @@ enum class FindingKind { kUnbalancedEdge, kNonManifoldEdge, kNonManifoldVertex }
 
 struct Finding {
   FindingKind kind = FindingKind::kUnbalancedEdge;
-  LabelPlace label = 0;  ///< kAllLabels: the boundary of all cells together
+  LabelIndex label = 0;  ///< kAllLabels: the boundary of all cells together
   bool is_on_triple_line = false;
   std::vector<VertexId> vertices;  ///< one vertex, or the two of an edge
   std::vector<CellId> cells;       ///< cells whose sides meet there
 };
 
-inline constexpr LabelPlace kAllLabels = 0;  ///< the background has no boundary of its own
+inline constexpr LabelIndex kAllLabels = 0;  ///< the background has no boundary of its own
 
 struct BoundaryFindings {
-  std::vector<BoundaryCounts> of_label;  ///< by LabelPlace; kAllLabels: all together
+  std::vector<BoundaryCounts> of_label;  ///< by LabelIndex; kAllLabels: all together
   std::vector<Finding> findings;         ///< every unbalanced edge; of the other kinds the first few
 };
 

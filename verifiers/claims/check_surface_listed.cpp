@@ -14,9 +14,13 @@ bool turn_alike(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>&
 
 class Lister {
  public:
-  Lister(const Mesh& mesh, const CellLabelPlaces& places, const std::vector<Side>& sides,
+  Lister(const Mesh& mesh, const CellLabelIndices& label_indices, const std::vector<Side>& sides,
          const SidesOfVertex& sides_of)
-      : mesh_(mesh), places_(places), sides_(sides), sides_of_(sides_of), is_listed_(sides.size(), false) {}
+      : mesh_(mesh),
+        label_indices_(label_indices),
+        sides_(sides),
+        sides_of_(sides_of),
+        is_listed_(sides.size(), false) {}
 
   ListedFacets inspect() {
     for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f) inspect(f);
@@ -58,11 +62,12 @@ class Lister {
   bool has_labels(const Side& side, std::uint32_t f, std::size_t across, std::size_t own) const {
     if (mesh_.facet_labels.empty()) return false;
     const auto& stated = mesh_.facet_labels[f];
-    return places_.labels[side.label] == stated[own] && places_.labels[side.across] == stated[across];
+    return label_indices_.labels[side.label] == stated[own] &&
+           label_indices_.labels[side.across] == stated[across];
   }
 
   const Mesh& mesh_;
-  const CellLabelPlaces& places_;
+  const CellLabelIndices& label_indices_;
   const std::vector<Side>& sides_;
   const SidesOfVertex& sides_of_;
   std::vector<bool> is_listed_;
@@ -72,9 +77,9 @@ class Lister {
 
 }  // namespace
 
-ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelPlaces& places,
+ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelIndices& label_indices,
                                    const std::vector<Side>& sides, const SidesOfVertex& sides_of) {
-  return Lister(mesh, places, sides, sides_of).inspect();
+  return Lister(mesh, label_indices, sides, sides_of).inspect();
 }
 
 }  // namespace podm::verify

@@ -16,7 +16,7 @@ struct ListedFacets {
   std::vector<std::uint32_t> turned;       ///< unlike most, the normal is not from second label to first
 };
 
-ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelPlaces& places,
+ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelIndices& label_indices,
                                    const std::vector<Side>& sides, const SidesOfVertex& sides_of);
 
 }  // namespace podm::verify

@@ -15,8 +15,8 @@
 //               indices, and a point of another label than p's, which a search finds (label_search.h).
 //               Filters and then rational arithmetic decide that both are within b of the vertex of the file,
 //               and that their labels differ. The search may miss a point, so the claim may fail for a mesh
-//               for which it holds; it never passes if it does not hold. Strengths of a smoothed image are
-//               taken to be right: smoothing.cpp computes them and is tested against its definition.
+//               for which it holds; it never passes if it does not hold. Voxel weights of a smoothed image
+//               are taken to be right: smoothing.cpp computes them and is tested against its definition.
 //               Distances of the second statement are rounded.
 //   Cost        Linear in the vertices of the surface; 2 to 20 us for each, more if more labels meet near it,
 //               and 40 bytes per facet side.
@@ -43,7 +43,7 @@ namespace podm::verify {
 namespace {
 
 // Less than 1 by more than the rounding of a vertex's voxel indices.
-constexpr double kSomewhatLess = 1 - 1e-3;
+constexpr double kSearchRadiusFactor = 1 - 1e-3;
 constexpr std::array<double, 2> kFurtherVoxels{0.01, 1};  // search radii around a vertex in violation
 
 double diagonal_mm(const Image& image) {
@@ -68,8 +68,8 @@ class SurfaceVertices {
   SurfaceVertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image, const Options& options,
                   Space space, int threads)
       : mesh_(mesh),
-        places_(mesh),
-        sides_(find_sides(mesh, adjacency, places_, threads)),
+        label_indices_(mesh),
+        sides_(find_sides(mesh, adjacency, label_indices_, threads)),
         sides_of_(sides_, mesh.vertices.size()),
         frame_(image, space),
         to_voxels_(image.voxel_to_ras, space),
@@ -77,7 +77,7 @@ class SurfaceVertices {
         judges_reach_(options.delta_mm.has_value()),
         reach_(image, std::max(2 * options.delta_mm.value_or(0), diagonal_mm(image))),
         bound_(options.vertex_bound_voxels),
-        squared_bound_(typed_decimal(bound_) * typed_decimal(bound_)) {}
+        squared_bound_(decimal_as_typed(bound_) * decimal_as_typed(bound_)) {}
 
   double reach_mm() const { return reach_.mm(); }
 
@@ -89,7 +89,7 @@ class SurfaceVertices {
     check_change(v, u, part);
     if (judges_reach_) check_reach(v, u, labels, part.tally);
     const bool meets_all = std::all_of(labels.begin(), labels.end(), [&](LabelValue label) {
-      return search_.find(u, is_label(label), kSomewhatLess * bound_, part.tally.num_exact).has_value();
+      return search_.find(u, is_label(label), kSearchRadiusFactor * bound_, part.tally.num_exact).has_value();
     });
     part.num_off_own_labels += meets_all ? 0 : 1;
   }
@@ -103,8 +103,8 @@ class SurfaceVertices {
   std::vector<LabelValue> labels_around(VertexId v) const {
     std::vector<LabelValue> labels;
     for (const std::uint32_t* side = sides_of_.begin(v); side != sides_of_.end(v); ++side)
-      for (const LabelPlace place : {sides_[*side].label, sides_[*side].across})
-        labels.push_back(places_.labels[place]);
+      for (const LabelIndex index : {sides_[*side].label, sides_[*side].across})
+        labels.push_back(label_indices_.labels[index]);
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     return labels;
@@ -115,7 +115,7 @@ class SurfaceVertices {
     ++tally.num_checked;
     const std::uint32_t own = search_.label_at(u, tally.num_exact);
     const auto is_other = [own](std::uint32_t label) { return label != own; };
-    auto other = search_.find(u, is_other, kSomewhatLess * bound_, tally.num_exact);
+    auto other = search_.find(u, is_other, kSearchRadiusFactor * bound_, tally.num_exact);
     const bool holds =
         other && is_within_bound(v, u, tally.num_exact) && is_within_bound(v, other->at, tally.num_exact);
     for (std::size_t i = 0; !other && i < kFurtherVoxels.size(); ++i)
@@ -168,7 +168,7 @@ class SurfaceVertices {
   }
 
   const Mesh& mesh_;
-  CellLabelPlaces places_;
+  CellLabelIndices label_indices_;
   std::vector<Side> sides_;
   SidesOfVertex sides_of_;
   ImageFrame frame_;

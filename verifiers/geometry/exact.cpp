@@ -107,7 +107,7 @@ int side_of_sphere(const Point& a, const Point& b, const Point& c, const Point& 
       CGAL::side_of_bounded_sphere(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(d), to_cgal(p)));
 }
 
-Rational typed_decimal(double x) {
+Rational decimal_as_typed(double x) {
   const std::string text = fmt::format("{}", x);  // the shortest text that reads back as x
   const std::size_t e = text.find('e');
   std::string digits = text.substr(0, e);

@@ -87,7 +87,7 @@ int sign_of(const Polynomial& polynomial, std::uint64_t& num_exact) {
 }
 
 /// Returns the decimal number that a user typed to get this double, as a rational: 1.93 is 193/100.
-Rational typed_decimal(double x);
+Rational decimal_as_typed(double x);
 
 /// Returns sin^2 of an angle of 0 to 90 degrees. It is exact at 0, 30, 45, 60 and 90, the only angles where
 /// it is rational (Niven). Elsewhere it is a rational above sin^2 by less than 1e-70.

@@ -14,9 +14,9 @@ namespace podm::verify {
 /// Smoothed interfaces of the image (smoothing.h).
 struct Smoothing {
   double width_mm = 0;
-  std::vector<std::uint16_t> strengths;  ///< one per voxel, in 65535ths
+  std::vector<std::uint16_t> voxel_weights;  ///< one per voxel, in 65535ths
 };
-inline constexpr std::uint16_t kFullStrength = 65535;
+inline constexpr std::uint16_t kFullVoxelWeight = 65535;
 
 /// Voxels are stored x fastest. Outside the grid every voxel is background (0).
 struct Image {

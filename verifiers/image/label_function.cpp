@@ -93,34 +93,35 @@ std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b)
   return labels;
 }
 
-std::array<std::uint16_t, 8> LabelFunction::strengths(const std::array<int, 3>& b) const {
-  if (smoothing_ != nullptr && is_inside(b)) return eight(smoothing_->strengths, b);
-  std::array<std::uint16_t, 8> strengths{};
+std::array<std::uint16_t, 8> LabelFunction::voxel_weights(const std::array<int, 3>& b) const {
+  if (smoothing_ != nullptr && is_inside(b)) return eight(smoothing_->voxel_weights, b);
+  std::array<std::uint16_t, 8> voxel_weights{};
   for (int c = 0; c < 8; ++c)
-    strengths[static_cast<std::size_t>(c)] = strength({b[0] + (c & 1), b[1] + (c >> 1 & 1), b[2] + (c >> 2)});
-  return strengths;
+    voxel_weights[static_cast<std::size_t>(c)] =
+        voxel_weight({b[0] + (c & 1), b[1] + (c >> 1 & 1), b[2] + (c >> 2)});
+  return voxel_weights;
 }
 
-// Beyond the grid returns the strength of the nearest voxel inside.
-std::uint16_t LabelFunction::strength(const std::array<int, 3>& voxel) const {
-  if (smoothing_ == nullptr) return kFullStrength;
+// Beyond the grid returns the weight of the nearest voxel inside.
+std::uint16_t LabelFunction::voxel_weight(const std::array<int, 3>& voxel) const {
+  if (smoothing_ == nullptr) return kFullVoxelWeight;
   const auto inside = [&](std::size_t axis) {
     return static_cast<std::size_t>(std::clamp(voxel[axis], 0, image_.size[axis] - 1));
   };
-  return smoothing_->strengths[inside(2) * slice_ + inside(1) * row_ + inside(0)];
+  return smoothing_->voxel_weights[inside(2) * slice_ + inside(1) * row_ + inside(0)];
 }
 
 double LabelFunction::change_after(const std::array<int, 3>& voxel, std::size_t axis) const {
   std::array<int, 3> next = voxel;
   ++next[axis];
-  const double first = strength(voxel), second = strength(next);
+  const double first = voxel_weight(voxel), second = voxel_weight(next);
   return first / (first + second);
 }
 
 std::array<double, 8> LabelFunction::smoothed(std::array<double, 8> corner_weights,
                                               const std::array<int, 3>& block) const {
-  const auto strengths = this->strengths(block);
-  for (std::size_t c = 0; c < 8; ++c) corner_weights[c] *= strengths[c] * (1.0 / kFullStrength);
+  const auto voxel_weights = this->voxel_weights(block);
+  for (std::size_t c = 0; c < 8; ++c) corner_weights[c] *= voxel_weights[c] * (1.0 / kFullVoxelWeight);
   return corner_weights;
 }
 
@@ -141,10 +142,10 @@ std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) c
     factors[axis][0] = 1 - factors[axis][1];
   }
   const auto labels = corners(block);
-  const auto strengths = this->strengths(block);
+  const auto voxel_weights = this->voxel_weights(block);
   std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; by label: the first of the greatest wins
   for (std::size_t c = 0; c < 8; ++c)
-    weights[labels[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
+    weights[labels[c]] += voxel_weights[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
   auto best = weights.begin();
   for (auto w = weights.begin(); w != weights.end(); ++w)
     if (w->second > best->second) best = w;

@@ -3,7 +3,7 @@
 // The isosurface is where the label changes.
 //
 // A label's weight is the trilinear interpolation of its indicator. The indicator is 1 at the label's voxels
-// and 0 elsewhere. In a smoothed image it is the strength of these voxels (smoothing.h), above 0 and at most
+// and 0 elsewhere. In a smoothed image it is the weight of the voxel (smoothing.h), above 0 and at most
 // 1, in place of 1. The weight is therefore continuous, and along each axis it changes by at most 1 per
 // voxel. Between the centers of two voxels that share a face only their labels have weight, and the label
 // changes once.
@@ -34,7 +34,8 @@ struct LabelWeights {
 class LabelFunction {
  public:
   /// Error bound of a weight, for coordinates taken as they are. It adds up three factors in [0,1] and a
-  /// strength, off by 2^-53 and twice that, three products, and at most eight terms that sum to at most 1.
+  /// voxel weight, off by 2^-53 and twice that, three products, and at most eight terms that sum to at
+  /// most 1.
   static constexpr double kWeightError = 0x1p-49;
 
   /// The function of the image as it is, smoothed or not.
@@ -55,8 +56,8 @@ class LabelFunction {
   /// Returns the labels of the eight voxels of the block whose first is `block`: voxel + (x,y,z) at x + 2y +
   /// 4z.
   std::array<std::uint32_t, 8> corners(const std::array<int, 3>& block) const;
-  /// Returns the strengths of these voxels, in 65535ths.
-  std::array<std::uint16_t, 8> strengths(const std::array<int, 3>& block) const;
+  /// Returns the weights of these voxels, in 65535ths.
+  std::array<std::uint16_t, 8> voxel_weights(const std::array<int, 3>& block) const;
   /// Returns where the label changes between `voxel` (0) and the next voxel along `axis` (1), if their labels
   /// differ. One of the two may lie one voxel beyond the grid.
   double change_after(const std::array<int, 3>& voxel, std::size_t axis) const;
@@ -72,7 +73,7 @@ class LabelFunction {
   template <class Value>
   std::array<Value, 8> eight(const std::vector<Value>& grid, const std::array<int, 3>& block) const;
   static Place place(const Point& u);
-  std::uint16_t strength(const std::array<int, 3>& voxel) const;
+  std::uint16_t voxel_weight(const std::array<int, 3>& voxel) const;
   std::array<double, 8> smoothed(std::array<double, 8> corner_weights, const std::array<int, 3>& block) const;
 
   const Image& image_;

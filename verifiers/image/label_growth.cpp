@@ -55,9 +55,9 @@ class LabelGrowth::Table {
   std::vector<Faces> sums_;
 };
 
-LabelGrowth::LabelGrowth(const Image& image, const std::vector<std::uint16_t>& strengths, double width_mm,
+LabelGrowth::LabelGrowth(const Image& image, const std::vector<std::uint16_t>& voxel_weights, double width_mm,
                          int threads)
-    : image_(image), strengths_(strengths), threads_(threads), grid_{{}, image.size} {
+    : image_(image), voxel_weights_(voxel_weights), threads_(threads), grid_{{}, image.size} {
   const double shortest = *std::min_element(image.spacing.begin(), image.spacing.end());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     reach_[axis] = voxels_to_cover(2 * width_mm / image.spacing[axis]);
@@ -108,21 +108,21 @@ LabelGrowth::Faces LabelGrowth::faces_of(const Voxel& v) const {
       const std::size_t other = grid_.at(n[0], n[1], n[2]);
       if (image_.voxels[other] == image_.voxels[own]) continue;
       faces.area += area_[axis];
-      faces.lead += area_[axis] * (std::int64_t{strengths_[own]} - std::int64_t{strengths_[other]});
+      faces.lead += area_[axis] * (std::int64_t{voxel_weights_[own]} - std::int64_t{voxel_weights_[other]});
     }
   return faces;
 }
 
-std::uint16_t LabelGrowth::strength_without(const Faces& near, std::uint16_t strength,
-                                            std::uint16_t least) const {
+std::uint16_t LabelGrowth::weight_without_growth(const Faces& near, std::uint16_t weight,
+                                                 std::uint16_t least) const {
   const double growth =
       near.area == 0 ? 0 : static_cast<double>(near.lead) / static_cast<double>(2 * near.area);
   return static_cast<std::uint16_t>(
-      std::clamp(std::round(strength - growth), 1.0 * least, 1.0 * kFullStrength));
+      std::clamp(std::round(weight - growth), 1.0 * least, 1.0 * kFullVoxelWeight));
 }
 
-std::vector<std::uint16_t> LabelGrowth::taken_back(std::uint16_t least) const {
-  std::vector<std::uint16_t> result = strengths_;
+std::vector<std::uint16_t> LabelGrowth::without_growth(std::uint16_t least) const {
+  std::vector<std::uint16_t> result = voxel_weights_;
   const std::vector<VoxelBox> tiles = tiles_of(image_.size);
   parallel_ranges(tiles.size(), threads_, [&](std::size_t begin, std::size_t end, std::size_t) {
     Table table(*this);
@@ -131,8 +131,8 @@ std::vector<std::uint16_t> LabelGrowth::taken_back(std::uint16_t least) const {
         table.fill(tiles[t].grown(reach_).common(grid_), label);
         for (const Voxel& v : voxels) {
           const Faces near = table.in(VoxelBox{v, {1, 1, 1}}.grown(reach_).common(grid_));
-          std::uint16_t& strength = result[grid_.at(v[0], v[1], v[2])];
-          strength = strength_without(near, strength, least);
+          std::uint16_t& weight = result[grid_.at(v[0], v[1], v[2])];
+          weight = weight_without_growth(near, weight, least);
         }
       }
   });

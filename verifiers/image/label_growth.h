@@ -1,4 +1,4 @@
-// The last step of smoothing.h: takes back the growth of labels.
+// The last step of smoothing.h: undoes the growth and shrinking of labels.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,14 @@ namespace podm::verify {
 
 class LabelGrowth {
  public:
-  /// Keeps references to the image and to the strengths of its voxels.
-  LabelGrowth(const Image& image, const std::vector<std::uint16_t>& strengths, double width_mm, int threads);
+  /// Keeps references to the image and to the voxel weights of its voxels.
+  LabelGrowth(const Image& image, const std::vector<std::uint16_t>& voxel_weights, double width_mm,
+              int threads);
 
-  /// Returns the strengths after this step, at least `least` where a voxel has another label among its 26
+  /// Returns the voxel weights after this step, at least `least` where a voxel has another label among its 26
   /// neighbours. All sums are of integers, so their order does not matter. Each thread takes 16 bytes per
   /// voxel within reach of a tile.
-  std::vector<std::uint16_t> taken_back(std::uint16_t least) const;
+  std::vector<std::uint16_t> without_growth(std::uint16_t least) const;
 
  private:
   class Table;
@@ -31,10 +32,10 @@ class LabelGrowth {
   bool is_at_interface(const Voxel& v) const;
   std::map<std::uint32_t, std::vector<Voxel>> at_interfaces(const VoxelBox& tile) const;
   Faces faces_of(const Voxel& v) const;
-  std::uint16_t strength_without(const Faces& near, std::uint16_t strength, std::uint16_t least) const;
+  std::uint16_t weight_without_growth(const Faces& near, std::uint16_t weight, std::uint16_t least) const;
 
   const Image& image_;
-  const std::vector<std::uint16_t>& strengths_;
+  const std::vector<std::uint16_t>& voxel_weights_;
   int threads_;
   VoxelBox grid_;
   std::array<int, 3> reach_{};

@@ -66,7 +66,7 @@ std::uint32_t parse_label(std::string_view text, const std::string& option) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError(fmt::format("{}: '{}' is no label (an integer, 0 to 2^32-1)", option, text));
+    throw InputError(fmt::format("{}: '{}' is not a label (an integer, 0 to 2^32-1)", option, text));
   return value;
 }
 

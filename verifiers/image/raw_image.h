@@ -37,7 +37,7 @@ void read_voxels(const std::string& path, RawImage& raw, ByteSource& source);
 
 /// Returns the voxel spacing, mm. An affine that is orthogonal up to the rounding of a header is made exactly
 /// orthogonal, in place. Throws InputError if the affine is singular or not finite.
-std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& voxel_to_ras);
+std::array<double, 3> orthogonalize_affine(const std::string& path, std::array<double, 12>& voxel_to_ras);
 
 /// Calls use(number, value) for every voxel, with the value in the type of the file.
 template <class Use>

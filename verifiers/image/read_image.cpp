@@ -18,7 +18,7 @@ std::uint32_t label_value(const std::string& path, Voxel voxel) {
   const auto value = static_cast<double>(voxel);
   if (!(value >= 0 && value < kEnd) || std::floor(value) != value)
     refuse(path, "a label image is needed: value " + std::to_string(value) +
-                     " is no label (integers, 0 to 2^32-1)");
+                     " is not a label (integers, 0 to 2^32-1)");
   return static_cast<std::uint32_t>(value);
 }
 
@@ -56,7 +56,7 @@ double distance_to_orthonormal(const Matrix& m) {
 // Headers state directions in single precision or with six digits. A direction that is orthonormal up to this
 // rounding is meant to be orthonormal, and the nearest orthonormal one replaces it: nothing else gives the
 // places of voxels to 1e-7 of the image's width. A direction further from orthonormal is shear and is kept.
-std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& a) {
+std::array<double, 3> orthogonalize_affine(const std::string& path, std::array<double, 12>& a) {
   constexpr double kHeaderRounding = 1e-5, kSmallestDeterminant = 1e-6;
   std::array<double, 3> spacing{};
   Matrix direction{};
@@ -94,7 +94,7 @@ Image read_image(const std::string& path) {
   image.warnings = raw.warnings;
   for (std::size_t axis = 0; axis < 3; ++axis) image.size[axis] = static_cast<int>(raw.size[axis]);
   image.voxel_to_ras = raw.voxel_to_ras;
-  image.spacing = settle_affine(path, image.voxel_to_ras);
+  image.spacing = orthogonalize_affine(path, image.voxel_to_ras);
   if (raw.slope != 1 || raw.intercept != 0)
     refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
   image.voxels.resize(raw.bytes.size() / bytes_of(raw.type));

@@ -80,7 +80,7 @@ RawImage read_inr(const std::string& path) {
   const Header header(path, source);
   RawImage raw;
   for (const char* key : {"XDIM", "YDIM", "ZDIM"}) raw.size.push_back(header.number(key, std::int64_t{0}));
-  if (header.number("VDIM", 1) != 1) refuse(path, "one value a voxel is needed (VDIM is not 1)");
+  if (header.number("VDIM", 1) != 1) refuse(path, "one value per voxel is needed (VDIM is not 1)");
   raw.type = voxel_type(path, header);
   raw.is_swapped = is_big_endian(path, header.text("CPU"));
   const std::array<const char*, 3> spacing{"VX", "VY", "VZ"}, offset{"TX", "TY", "TZ"};

@@ -59,7 +59,7 @@ std::string beside(const std::string& path, const std::string& name) {
   const std::string file = (std::filesystem::path(path).parent_path() / name).string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
-    refuse(path, "its voxels are missing (no file '" + name + "' beside it)");
+    refuse(path, "its voxels are missing: no file '" + name + "' beside it");
   return file;
 }
 
@@ -115,7 +115,7 @@ void expect_meta_lines(const std::string& path, const std::vector<std::string>& 
     const bool is_field = lines[i].find('=') < lines[i].find(':');
     if (lines[i].size() < 255 && (is_field || trimmed(lines[i]).empty())) continue;
     refuse(path, "not a MetaImage header (wrong magic, or a line " + std::to_string(i + 1) +
-                     " that is no 'name = value' of less than 255 bytes)");
+                     " that is not 'name = value' of less than 255 bytes)");
   }
 }
 
@@ -151,7 +151,8 @@ VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
       {Io::LONG, VoxelType::kInt64},    {Io::LONGLONG, VoxelType::kInt64},
       {Io::FLOAT, VoxelType::kFloat},   {Io::DOUBLE, VoxelType::kDouble}};
   if (io.GetNumberOfComponents() != 1)
-    refuse(path, "one value a voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
+    refuse(path,
+           "one value per voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
   const auto known = kTypes.find(io.GetComponentType());
   if (known == kTypes.end()) refuse(path, "unknown voxel type");
   return known->second;

@@ -81,7 +81,7 @@ VoxelType voxel_type(const std::string& path, const NiftiHeader& header) {
   const int datatype = header.at<std::int16_t>(kDatatype);
   const auto known = kTypes.find(datatype);
   if (known == kTypes.end())
-    refuse(path, "one plain number a voxel is needed (NIfTI datatype " + std::to_string(datatype) + ")");
+    refuse(path, "one plain number per voxel is needed (NIfTI datatype " + std::to_string(datatype) + ")");
   return known->second;
 }
 

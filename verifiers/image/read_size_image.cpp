@@ -12,7 +12,7 @@ SizeImage read_size_image(const std::string& path) {
   image.warnings = raw.warnings;
   for (std::size_t axis = 0; axis < 3; ++axis) image.size[axis] = static_cast<int>(raw.size[axis]);
   image.voxel_to_ras = raw.voxel_to_ras;
-  settle_affine(path, image.voxel_to_ras);
+  orthogonalize_affine(path, image.voxel_to_ras);
   image.radius_mm.resize(raw.bytes.size() / bytes_of(raw.type));
   for_each_voxel(raw, [&](std::size_t i, auto voxel) {
     const double value = raw.slope * static_cast<double>(voxel) + raw.intercept;

@@ -25,7 +25,7 @@ double parse_length(std::string_view length, std::string_view text) {
   const auto [end, error] = std::from_chars(length.data(), length.data() + length.size(), value);
   if (error != std::errc{} || end != length.data() + length.size()) refuse_text(text);
   if (!(value > 0) || std::isinf(value))
-    throw InputError(fmt::format("{} {}: '{}' is no positive, finite length", kOption, text, length));
+    throw InputError(fmt::format("{} {}: '{}' is not a positive, finite length", kOption, text, length));
   return value;
 }
 

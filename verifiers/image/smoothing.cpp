@@ -55,13 +55,13 @@ class Smoother {
         threads_(threads),
         grid_{{}, image.size},
         voxel_mm_(std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2])),
-        unit_mm_(std::max(1.1 * width_mm, voxel_mm_ / 2) / kFullStrength),
+        unit_mm_(std::max(1.1 * width_mm, voxel_mm_ / 2) / kFullVoxelWeight),
         tiles_(tiles_of(image.size)),
         is_open_(image.voxels.size()),
         is_lost_(image.voxels.size()),
-        strengths_(image.voxels.size(), kFullStrength) {}
+        voxel_weights_(image.voxels.size(), kFullVoxelWeight) {}
 
-  std::vector<std::uint16_t> strengths(double width_mm) {
+  std::vector<std::uint16_t> voxel_weights(double width_mm) {
     open_interfaces();
     for (double width = width_mm; !tiles_.empty() && !(width < (1 - kLengthRounding) * voxel_mm_ / 2);
          width /= 2) {
@@ -70,8 +70,9 @@ class Smoother {
     }
     close_as_stairs();
     for (int time = 0; time < 2; ++time)
-      strengths_ = LabelGrowth(image_, strengths_, width_mm, threads_).taken_back(strength_of(0));
-    return std::move(strengths_);
+      voxel_weights_ =
+          LabelGrowth(image_, voxel_weights_, width_mm, threads_).without_growth(voxel_weight_of(0));
+    return std::move(voxel_weights_);
   }
 
  private:
@@ -122,9 +123,9 @@ class Smoother {
     std::copy(first, first + image_.size[0], row.begin() + 1);
   }
 
-  std::uint16_t strength_of(double depth_mm) const {
+  std::uint16_t voxel_weight_of(double depth_mm) const {
     return static_cast<std::uint16_t>(
-        std::min(std::round(std::max(depth_mm, voxel_mm_ / 20) / unit_mm_), double{kFullStrength}));
+        std::min(std::round(std::max(depth_mm, voxel_mm_ / 20) / unit_mm_), double{kFullVoxelWeight}));
   }
 
   void weigh(double width_mm) {
@@ -136,7 +137,7 @@ class Smoother {
         for_open(tiles_[t], [&](std::size_t at, std::size_t in_tile) {
           const double depth = depth_of_lead * leads[in_tile];
           is_lost_[at] = depth < -voxel_mm_ / 4 ? 1 : 0;
-          strengths_[at] = strength_of(depth);
+          voxel_weights_[at] = voxel_weight_of(depth);
         });
       }
     });
@@ -190,7 +191,7 @@ class Smoother {
     for_tiles([&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         for_open(tiles_[t],
-                 [&](std::size_t at, std::size_t) { strengths_[at] = strength_of(voxel_mm_ / 2); });
+                 [&](std::size_t at, std::size_t) { voxel_weights_[at] = voxel_weight_of(voxel_mm_ / 2); });
     });
     is_open_ = std::vector<std::uint8_t>();  // frees the memory
     is_lost_ = std::vector<std::uint8_t>();
@@ -199,17 +200,17 @@ class Smoother {
   const Image& image_;
   int threads_;
   VoxelBox grid_;
-  double voxel_mm_, unit_mm_;  // h; the depth of a strength of 1/65535
+  double voxel_mm_, unit_mm_;  // h; the depth of a voxel weight of 1/65535
   std::vector<VoxelBox> tiles_;
   std::vector<std::uint8_t> is_open_, is_lost_;  // not decided yet; lost with this width
-  std::vector<std::uint16_t> strengths_;
+  std::vector<std::uint16_t> voxel_weights_;
 };
 
 }  // namespace
 
 Smoothing smooth(const Image& image, double width_mm, int threads) {
   check_width(image, width_mm);
-  return {width_mm, Smoother(image, width_mm, threads).strengths(width_mm)};
+  return {width_mm, Smoother(image, width_mm, threads).voxel_weights(width_mm)};
 }
 
 }  // namespace podm::verify

@@ -65,7 +65,7 @@ std::string_view Cursor::peek_word() {
 
 std::string_view Cursor::word(const char* what) {
   const std::string_view text = peek_word();
-  if (text.empty()) refuse(fmt::format("the file ends where {} should be", what));
+  if (text.empty()) refuse(fmt::format("the file ends where {} is expected", what));
   next_ += text.size();
   return text;
 }
@@ -81,7 +81,7 @@ std::string_view Cursor::rest_of_line() {
 
 std::string_view Cursor::start_of_number(const char* what) {
   skip_blanks();
-  if (next_ == end_) refuse(fmt::format("the file ends where {} should be", what));
+  if (next_ == end_) refuse(fmt::format("the file ends where {} is expected", what));
   const bool has_plus = *next_ == '+' && end_ - next_ > 1 && next_[1] != '-';  // from_chars takes no plus
   return {next_ + has_plus, end_};
 }

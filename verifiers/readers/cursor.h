@@ -65,7 +65,8 @@ class Cursor {
   void expect_room(std::uint64_t count, std::size_t least_bytes, const char* what) const;
   /// Throws InputError with the position of the last word or bytes.
   [[noreturn]] void refuse(const std::string& fault) const;
-  [[noreturn]] void refuse_word(const char* fault, std::string_view word) const;  ///< "'abc' is no keyword"
+  [[noreturn]] void refuse_word(const char* fault,
+                                std::string_view word) const;  ///< "'abc' is not a keyword"
 
  private:
   static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }

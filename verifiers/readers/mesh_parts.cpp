@@ -78,7 +78,7 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
       return;
     }
   }
-  file.refuse(place, fmt::format("the promise '{}' is none that is known", words));
+  file.refuse(place, fmt::format("the promise '{}' is unknown", words));
 }
 
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix) {

@@ -134,8 +134,8 @@ std::string_view NetcdfDocument::bytes_of(const std::string& name, const NetcdfV
 NumberArray NetcdfDocument::numbers(const std::string& name, std::uint64_t count) const {
   const std::string place = fmt::format("variable '{}'", name);
   const NetcdfVariable* variable = find(name);
-  if (variable == nullptr) file_.refuse(place, "there is none");
-  if (variable->type == kChar) file_.refuse(place, "text where numbers should be");
+  if (variable == nullptr) file_.refuse(place, "the file has no such variable");
+  if (variable->type == kChar) file_.refuse(place, "holds text, not numbers");
   NumberArray values(bytes_of(name, *variable), *number_type(variable->type), kIsSwapped);
   if (values.size() != count)
     file_.refuse(place, fmt::format("{} values, {} are expected", values.size(), count));

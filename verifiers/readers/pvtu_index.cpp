@@ -80,7 +80,8 @@ class PvtuParser {
     if (name == "PUnstructuredGrid") {
       has_grid_ = true;
       const std::string level = attribute("GhostLevel");
-      if (!level.empty() && level != "0") refuse("the pieces have ghost cells, which cannot be told apart");
+      if (!level.empty() && level != "0")
+        refuse("the pieces have ghost cells, which cannot be distinguished");
     }
     if (name == "Piece") add_piece(attribute("Source"));
   }

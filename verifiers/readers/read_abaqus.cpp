@@ -224,7 +224,7 @@ class AbaqusReader {
     const auto element = take<std::uint64_t>("the number of an element");
     const std::string_view side = take_field(line_);
     if (side.size() != 2 || (side[0] != 'S' && side[0] != 's') || side[1] < '1' || side[1] > '4')
-      cursor_.refuse_word("is no side of a tetrahedron, S1 to S4", side);
+      cursor_.refuse_word("is not a side of a tetrahedron, S1 to S4", side);
     sides_.push_back({element, static_cast<std::uint32_t>(side[1] - '1'), labels_of_side_});
   }
 

@@ -92,7 +92,7 @@ class ExodusReader {
   }
 
   LabelValue label_of(const std::optional<std::int64_t>& id) const {
-    if (!id) file_.refuse("variable 'eb_prop1'", "a block's number is no integer");
+    if (!id) file_.refuse("variable 'eb_prop1'", "a block's number is not an integer");
     const auto label = label_of_block_.find(*id);
     return label == label_of_block_.end() ? *id : label->second;
   }
@@ -102,7 +102,8 @@ class ExodusReader {
     const std::string connect = fmt::format("connect{}", number);
     const std::uint64_t num_nodes = document_.size_of(fmt::format("num_nod_per_el{}", number));
     const NetcdfVariable* variable = document_.find(connect);
-    if (variable == nullptr) file_.refuse(fmt::format("variable '{}'", connect), "there is none");
+    if (variable == nullptr)
+      file_.refuse(fmt::format("variable '{}'", connect), "the file has no such variable");
     const auto type = variable->attributes.find("elem_type");
     const std::string shape = upper(type == variable->attributes.end() ? "" : type->second);
     const bool is_solid = shape.starts_with("TET"), is_triangle = shape.starts_with("TRI");
@@ -152,7 +153,7 @@ class ExodusReader {
       const auto pair = pair_of_set_.find(ids.integer(i).value_or(-1));
       if (pair == pair_of_set_.end())
         file_.refuse("info_records",
-                     fmt::format("no line 'pair' tells of side set {}", ids.integer(i).value_or(-1)));
+                     fmt::format("side set {} has no line 'pair'", ids.integer(i).value_or(-1)));
       read_side_set(i + 1, pair->second);
     }
   }
@@ -168,7 +169,7 @@ class ExodusReader {
       const std::size_t cell = cell_of(elements.integer(i).value_or(0));
       if (side < 1 || side > 4 || cell >= mesh_.cells.size())
         file_.refuse(fmt::format("variable '{}'", list),
-                     fmt::format("entry {} is no side of a tetrahedron", i));
+                     fmt::format("entry {} is not a side of a tetrahedron", i));
       const auto& corners = mesh_.cells[cell];
       const auto& [a, b, c] = kOutward[static_cast<std::size_t>(side - 1)];
       mesh_.facets.push_back({corners[a], corners[b], corners[c]});

@@ -34,7 +34,7 @@ class GmshReader {
     read_format();
     while (!cursor_.is_at_last_word()) {
       const std::string_view head = cursor_.word("a section");
-      if (head[0] != '$') cursor_.refuse_word("stands where a section should begin", head);
+      if (head[0] != '$') cursor_.refuse_word("stands where a section is expected", head);
       read_section(std::string(head.substr(1)));
     }
     if (!has_nodes_ || !has_elements_)
@@ -345,7 +345,7 @@ class GmshReader {
     for (const std::int64_t surface : elements_.facet_entities()) {
       const auto pair = pair_of_surface_.find(surface);
       if (pair == pair_of_surface_.end())
-        file_.refuse("$Elements", fmt::format("no line 'pair' of $Comments tells of surface {}", surface));
+        file_.refuse("$Elements", fmt::format("surface {} has no line 'pair' in $Comments", surface));
       mesh_.facet_labels.push_back(pair->second);
     }
   }

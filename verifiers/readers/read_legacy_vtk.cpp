@@ -72,7 +72,8 @@ class LegacyVtkReader {
     read_head();
     while (!cursor_.is_at_last_word()) {
       const std::string keyword = upper(cursor_.word("a keyword"));
-      if (!read_geometry(keyword) && !read_attribute(keyword)) cursor_.refuse_word("is no keyword", keyword);
+      if (!read_geometry(keyword) && !read_attribute(keyword))
+        cursor_.refuse_word("is not a keyword", keyword);
     }
     return assemble();
   }
@@ -232,13 +233,13 @@ class LegacyVtkReader {
     if (name == "STRING") return skip_strings(count, num_components);
     if (name == "BIT") return skip_bits(count, num_components);
     const auto type = number_type(name);
-    if (!type) cursor_.refuse_word("is no type", name);
+    if (!type) cursor_.refuse_word("is not a type", name);
     return read_numbers(*type, count, num_components);
   }
 
-  std::size_t product(std::size_t count, std::size_t num_components, std::size_t values_a_byte = 1) const {
+  std::size_t product(std::size_t count, std::size_t num_components, std::size_t values_per_byte = 1) const {
     if (num_components == 0) return 0;
-    cursor_.expect_room(count / values_a_byte, num_components, "the number of tuples");
+    cursor_.expect_room(count / values_per_byte, num_components, "the number of tuples");
     return count * num_components;
   }
 

@@ -199,7 +199,7 @@ class MeditTextReader {
     if (keyword == kVertices.keyword) return builder_.read_vertices(numbers);
     for (const Section& section : kCells)
       if (keyword == section.keyword) return builder_.read_cells(section, numbers);
-    if (!is_letter(keyword[0])) cursor_.refuse_word("stands where a keyword should be", keyword);
+    if (!is_letter(keyword[0])) cursor_.refuse_word("stands where a keyword is expected", keyword);
     for (const Section& section : kOtherCells)
       if (keyword == section.keyword) builder_.count_other_cells(section, numbers);
     while (is_content(cursor_.peek_word())) cursor_.word("a number");

@@ -100,7 +100,9 @@ void check_extension(const std::string& path, const std::string& extension) {
 Mesh read_mesh(const std::string& path) {
   const MeshPath parts(path);
   check_extension(path, parts.extension);
-  const auto refuse_size = [&]() -> Mesh { throw InputError(path + ": needs more memory than there is"); };
+  const auto refuse_size = [&]() -> Mesh {
+    throw InputError(path + ": needs more memory than the machine has");
+  };
   try {
     const MeshFile file(path);
     Mesh mesh = read_format(parts, file);

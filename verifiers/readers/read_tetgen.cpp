@@ -48,7 +48,7 @@ class TetgenReader {
   }
 
   static void check_number(const Cursor& cursor, std::int64_t number, std::int64_t expected) {
-    if (number != expected) cursor.refuse(fmt::format("number {} where {} should be", number, expected));
+    if (number != expected) cursor.refuse(fmt::format("number {} where {} is expected", number, expected));
   }
 
   void read_nodes(const MeshFile& file) {
@@ -82,10 +82,10 @@ class TetgenReader {
   void read_elements(const MeshFile& file) {
     Cursor cursor = open(file);
     const std::size_t count = cursor.count("the number of tetrahedra", 10);
-    const std::size_t num_nodes = optional_count(cursor, "nodes a tetrahedron", 4);
+    const std::size_t num_nodes = optional_count(cursor, "nodes per tetrahedron", 4);
     if (num_nodes != 4 && num_nodes != 10)
-      cursor.refuse(fmt::format("{} nodes a tetrahedron, neither 4 nor 10", num_nodes));
-    bool has_labels = optional_count(cursor, "attributes a tetrahedron", 0) > 0;
+      cursor.refuse(fmt::format("{} nodes per tetrahedron, neither 4 nor 10", num_nodes));
+    bool has_labels = optional_count(cursor, "attributes per tetrahedron", 0) > 0;
     cursor.rest_of_line();
     check_counts(file, "line 1", 0, count);
     make_room(mesh_.cells, count);
@@ -110,7 +110,7 @@ class TetgenReader {
   void read_faces(const MeshFile& file) {
     Cursor cursor = open(file);
     const std::size_t count = cursor.count("the number of faces", 8);
-    const bool has_markers = optional_count(cursor, "markers a face", 0) > 0;
+    const bool has_markers = optional_count(cursor, "markers per face", 0) > 0;
     cursor.rest_of_line();
     std::vector<std::int64_t> markers;
     make_room(mesh_.facets, count);

@@ -173,7 +173,7 @@ void append_facets(const MeshFile& file, const VtuGrid& grid, const std::vector<
                    Mesh& mesh) {
   if (grid.mesh.facets.empty()) return;
   if (!mesh.facets.empty() && mesh.facet_labels.empty() != grid.mesh.facet_labels.empty())
-    file.refuse("CellData", "label_a and label_b are not in all pieces that have triangles");
+    file.refuse("CellData", "label_a and label_b are missing in a piece that has triangles");
   append_corners(grid.mesh.facets, vertex_of, mesh.facets);
   append_labels(grid.mesh.facet_labels, mesh.facet_labels);
 }

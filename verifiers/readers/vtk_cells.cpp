@@ -157,7 +157,7 @@ void VtkAssembler::append_cell_labels(const VtkPiece& piece) {
   if (is_first && labels != nullptr) mesh_.cell_label_array = labels->name;
   if (mesh_.cell_label_array.empty()) return;
   if (labels == nullptr || !holds_labels(*labels, piece.types.size()))
-    refuse(piece, fmt::format("no cell array '{}' of one integer a cell", mesh_.cell_label_array));
+    refuse(piece, fmt::format("no cell array '{}' of one integer per cell", mesh_.cell_label_array));
   make_room(mesh_.cell_labels, cells_.size());
   for (const std::size_t cell : cells_) mesh_.cell_labels.push_back(*labels->values.integer(cell));
 }
@@ -167,13 +167,13 @@ void VtkAssembler::append_facet_labels(const VtkPiece& piece) {
   if (sides[0] == nullptr && sides[1] == nullptr && mesh_.facet_labels.empty()) return;
   for (const NamedArray* side : sides) {
     if (side == nullptr || side->num_components != 1 || side->values.size() != piece.types.size())
-      refuse(piece, "triangles need both arrays, label_a and label_b, of one integer a cell");
+      refuse(piece, "triangles need both arrays, label_a and label_b, of one integer per cell");
   }
   if (mesh_.facet_labels.size() + facets_.size() != mesh_.facets.size())
-    refuse(piece, "label_a and label_b are here and not in a piece before");
+    refuse(piece, "label_a and label_b are in this piece and not in an earlier one");
   for (const std::size_t cell : facets_) {
     const auto a = sides[0]->values.integer(cell), b = sides[1]->values.integer(cell);
-    if (!a || !b) refuse(piece, fmt::format("cell {}: label_a or label_b is no integer", cell));
+    if (!a || !b) refuse(piece, fmt::format("cell {}: label_a or label_b is not an integer", cell));
     mesh_.facet_labels.push_back({*a, *b});
   }
 }

@@ -119,7 +119,8 @@ class ArrayLoader {
   }
 
   void check_whole(std::uint64_t size) const {
-    if (size % size_of(array_.type) != 0) refuse(fmt::format("{} bytes are no whole number of values", size));
+    if (size % size_of(array_.type) != 0)
+      refuse(fmt::format("{} bytes are not a whole number of values", size));
   }
 
   [[noreturn]] void refuse(const std::string& fault) const { file_.refuse(array_.place(), fault); }

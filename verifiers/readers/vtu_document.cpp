@@ -167,7 +167,8 @@ class VtuParser {
     if (list == nullptr || attribute("type") == "String" || attribute("type") == "Bit") return;  // no labels
     array.line = line();
     if (type == std::end(kTypes))
-      refuse(fmt::format("DataArray '{}' of type '{}': no number type", array.name, attribute("type")));
+      refuse(
+          fmt::format("DataArray '{}' of type '{}': not a type of numbers", array.name, attribute("type")));
     array.type = type->type;
     if (!attribute("NumberOfComponents").empty()) array.num_components = number("NumberOfComponents");
     const std::string_view format = attribute("format");

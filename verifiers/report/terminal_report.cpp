@@ -8,7 +8,7 @@ namespace podm::verify {
 namespace {
 
 std::string witness_text(const Witness& witness) {
-  std::string text = fmt::format("      not so that {}", witness.statement);
+  std::string text = fmt::format("      violated: {}", witness.statement);
   if (!witness.cells.empty()) text += fmt::format("; cell {}", fmt::join(witness.cells, ", "));
   if (!witness.vertices.empty()) text += fmt::format("; vertices {}", fmt::join(witness.vertices, ", "));
   if (witness.value != 0) text += fmt::format("; value {:.9g}", witness.value);
@@ -52,8 +52,8 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
   for (const auto& [name, count] : mesh.other_cells)
     text += fmt::format("  also holds {} {}, not checked\n", count, name);
   if (inputs.image && inputs.image->smoothing)
-    text += fmt::format("  image smoothed by {} mm, as {} says\n", inputs.image->smoothing->width_mm,
-                        options.smooth_mm ? "--smooth" : "the mesh's file");
+    text += fmt::format("  image smoothed by {} mm, as {} states\n", inputs.image->smoothing->width_mm,
+                        options.smooth_mm ? "--smooth" : "the mesh file");
   if (inputs.image)
     for (const std::string& warning : inputs.image->warnings) text += fmt::format("  warning: {}\n", warning);
   if (inputs.sizes)

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-from mutants import Workshop
+from mutants import MutantFixture
 from tolerance_mutants import OPERATORS
 
 
@@ -41,9 +41,9 @@ def main():
     print(f"{'operator':<35} {'claim':<16} {'mutant':<10} neighbour")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        shop = Workshop(podm, folder)
+        fixture = MutantFixture(podm, folder)
         for function, claim, exit_code in OPERATORS:
-            pair = function(shop)
+            pair = function(fixture)
             code, verdict, _ = run(verifier, pair.mutant, claim, folder)
             is_killed = code == exit_code and verdict == ("fail" if claim else None)
             is_pure = all(run(verifier, pair.mutant, other, folder)[:2] == (0, "pass") for other in pair.still_passes)

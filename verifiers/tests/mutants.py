@@ -1,6 +1,6 @@
 """Mutation operators: each makes a mesh that one claim must reject, and a harmless neighbour that it must accept.
 
-An operator is a function of a Workshop that returns a Mutant. Its docstring is its line in the kill matrix.
+An operator is a function of a MutantFixture that returns a Mutant. Its docstring is its line in the kill matrix.
 """
 
 import dataclasses
@@ -42,7 +42,7 @@ class Mutant:
     still_passes: tuple = ()  # other claims, which must accept the mutant
 
 
-class Workshop:
+class MutantFixture:
     """The base mesh (three touching spheres, meshed by podm), its image, and a folder."""
 
     def __init__(self, podm, folder):
@@ -133,34 +133,34 @@ def empty_mesh(_):
 
 
 @operator("structure")
-def not_a_number(shop):
+def not_a_number(fixture):
     """a coordinate that is not a number"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.vertices[17, 1] = math.nan
-    return Mutant(Case(mesh), Case(shop.base))
+    return Mutant(Case(mesh), Case(fixture.base))
 
 
 @operator("structure")
-def id_out_of_range(shop):
+def id_out_of_range(fixture):
     """a vertex id one beyond the last"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.cells[5, 2] = len(mesh.vertices)
-    return Mutant(Case(mesh), Case(shop.base))
+    return Mutant(Case(mesh), Case(fixture.base))
 
 
 @operator("structure")
-def swapped_vertices(shop):
+def swapped_vertices(fixture):
     """two vertices of a cell swapped; harmless: an even permutation"""
-    mesh, even = shop.base.copy(), shop.base.copy()
+    mesh, even = fixture.base.copy(), fixture.base.copy()
     mesh.cells[11, [0, 1]] = mesh.cells[11, [1, 0]]
     even.cells[11, [0, 1, 2]] = even.cells[11, [1, 2, 0]]
     return Mutant(Case(mesh), Case(even))
 
 
 @operator("structure")
-def left_handed(shop):
+def left_handed(fixture):
     """every cell reversed; harmless: every cell permuted evenly"""
-    mesh, even = shop.base.copy(), shop.base.copy()
+    mesh, even = fixture.base.copy(), fixture.base.copy()
     mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
     even.cells[:, [0, 1, 2]] = even.cells[:, [1, 2, 0]]
     return Mutant(Case(mesh), Case(even))
@@ -174,9 +174,9 @@ def flat_cell(_):
 
 
 @operator("structure")
-def duplicate_cell(shop):
+def duplicate_cell(fixture):
     """a cell listed twice; harmless: the cells in reverse order"""
-    mesh, reverse = shop.base.copy(), shop.base.copy()
+    mesh, reverse = fixture.base.copy(), fixture.base.copy()
     mesh.cells = np.vstack([mesh.cells, np.roll(mesh.cells[3, :3], 1).tolist() + mesh.cells[3, 3:].tolist()])
     reverse.cells = reverse.cells[::-1].copy()
     return Mutant(Case(mesh), Case(reverse))
@@ -194,11 +194,11 @@ def facet_of_three_cells(_):
 
 
 @operator("structure")
-def duplicated_vertices(shop):
+def duplicated_vertices(fixture):
     """a crack: the vertices between two halves doubled; harmless: an unused vertex, which is a warning"""
-    orphan = shop.base.copy()
+    orphan = fixture.base.copy()
     orphan.vertices = np.vstack([orphan.vertices, [(999, 999, 999)]])
-    return Mutant(Case(cracked(shop.base)), Case(orphan, warnings=1))
+    return Mutant(Case(cracked(fixture.base)), Case(orphan, warnings=1))
 
 
 def cracked(base):
@@ -213,27 +213,27 @@ def cracked(base):
 
 
 @operator("structure")
-def doubled_point(shop):
+def doubled_point(fixture):
     """a cell with its own point at the place of another vertex; harmless: the same point, used by no cell"""
-    unused = shop.base.copy()
-    unused.vertices = np.vstack([unused.vertices, unused.vertices[shop.base.cells[23, 1]]])
+    unused = fixture.base.copy()
+    unused.vertices = np.vstack([unused.vertices, unused.vertices[fixture.base.cells[23, 1]]])
     used = unused.copy()
     used.cells[23, 1] = len(used.vertices) - 1
     return Mutant(Case(used), Case(unused, warnings=1))
 
 
 @operator("conformity")
-def crack(shop):
+def crack(fixture):
     """facets on two sides of a crack that are not one facet; harmless: without the crack"""
-    return Mutant(Case(cracked(shop.base)), Case(shop.base))
+    return Mutant(Case(cracked(fixture.base)), Case(fixture.base))
 
 
 @operator("conformity")
-def doubled_along_a_leaf(shop):
+def doubled_along_a_leaf(fixture):
     """a cell's vertex doubled along a leaf boundary; harmless: the same vertex doubled, used by no cell"""
-    schedule = shop.schedule([(0, 0, 1, [0])])
+    schedule = fixture.schedule([(0, 0, 1, [0])])
     cubes = kuhn_cubes(2, 1, 1)
-    cubes.vertices = cubes.vertices * 16 + shop.base.vertices.min(axis=0)
+    cubes.vertices = cubes.vertices * 16 + fixture.base.vertices.min(axis=0)
     unused = cubes.copy()
     unused.vertices = np.vstack([unused.vertices, unused.vertices[cubes.cells[0, 0]]])
     doubled = unused.copy()
@@ -242,28 +242,29 @@ def doubled_along_a_leaf(shop):
 
 
 @operator("conformity")
-def active_neighbours(shop):
+def active_neighbours(fixture):
     """two leaves active at once within two rings; harmless: one after the other, or three apart"""
     def row(i):
         return i * 36
-    too_near = shop.schedule([(row(0), 0, 2, [row(0)]), (row(2), 1, 3, [row(2)])])
-    apart = shop.schedule([(row(0), 0, 2, [row(0)]), (row(2), 2, 3, [row(2)]), (row(5), 2, 4, [row(5)])])
-    return Mutant(Case(shop.base, too_near), Case(shop.base, apart))
+    too_near = fixture.schedule([(row(0), 0, 2, [row(0)]), (row(2), 1, 3, [row(2)])])
+    apart = fixture.schedule([(row(0), 0, 2, [row(0)]), (row(2), 2, 3, [row(2)]), (row(5), 2, 4, [row(5)])])
+    return Mutant(Case(fixture.base, too_near), Case(fixture.base, apart))
 
 
 @operator("conformity")
-def touched_outside(shop):
+def touched_outside(fixture):
     """an operation that touched a leaf of the second ring; harmless: a leaf of the first ring"""
-    return Mutant(Case(shop.base, shop.schedule([(0, 0, 1, [0, 72])])),
-                  Case(shop.base, shop.schedule([(0, 0, 1, [0, 36])])))
+    return Mutant(Case(fixture.base, fixture.schedule([(0, 0, 1, [0, 72])])),
+                  Case(fixture.base, fixture.schedule([(0, 0, 1, [0, 36])])))
 
 
 @operator("structure")
-def overlap_inside(shop):
+def overlap_inside(fixture):
     """a positive cell inside another; harmless: the same cell far away"""
     inside, outside = REGULAR * 0.1, REGULAR * 0.1 + 500
-    center = shop.base.vertices[shop.base.cells[100, :4]].mean(axis=0)
-    return Mutant(Case(joined(shop.base, tetrahedron(inside + center))), Case(joined(shop.base, tetrahedron(outside))))
+    center = fixture.base.vertices[fixture.base.cells[100, :4]].mean(axis=0)
+    return Mutant(Case(joined(fixture.base, tetrahedron(inside + center))),
+                  Case(joined(fixture.base, tetrahedron(outside))))
 
 
 @operator("structure")
@@ -315,30 +316,30 @@ def refilled(mesh, gone, made):
     return MeditMesh(mesh.vertices, np.vstack([np.delete(mesh.cells, gone, axis=0), cells]), mesh.facets, mesh.comments)
 
 
-def flips_2_3(shop, mesh):
+def flips_2_3(fixture, mesh):
     """Yields the mesh after each 2-3 flip: a facet inside a label is removed, the edge across it is made."""
-    for c, v, d, w, (a, b, e) in shop.facet_pairs(mesh):
+    for c, v, d, w, (a, b, e) in fixture.facet_pairs(mesh):
         if mesh.cells[c, 4] == mesh.cells[d, 4]:
             yield refilled(mesh, [c, d], [(a, b, v, w), (b, e, v, w), (e, a, v, w)])
 
 
-def flips_3_2(shop, mesh):
+def flips_3_2(fixture, mesh):
     """Yields the inverse: an edge of three cells is removed, the facet across it is made."""
-    for gone, a, b, ring in shop.edge_rings(mesh, 3):
+    for gone, a, b, ring in fixture.edge_rings(mesh, 3):
         yield refilled(mesh, gone, [(*ring, a), (*ring, b)])
 
 
-def flips_4_4(shop, mesh):
+def flips_4_4(fixture, mesh):
     """Yields the mesh after each 4-4 flip: an edge of four cells is replaced by an edge of two link vertices."""
-    for gone, a, b, ring in shop.edge_rings(mesh, 4):
+    for gone, a, b, ring in fixture.edge_rings(mesh, 4):
         for p, x, q, y in (ring, np.roll(ring, 1)):
             yield refilled(mesh, gone, [(p, q, a, x), (p, q, x, b), (p, q, b, y), (p, q, y, a)])
 
 
-def flip_mutant(shop, flips, tie):
+def flip_mutant(fixture, flips, tie):
     """Mutates the base mesh by its first such flip; `tie`, whose vertices are cospherical, stays Delaunay after it."""
-    mutant, neighbour = (next(flipped for flipped in flips(shop, mesh) if flipped is not None)
-                         for mesh in (shop.base, tie))
+    mutant, neighbour = (next(flipped for flipped in flips(fixture, mesh) if flipped is not None)
+                         for mesh in (fixture.base, tie))
     return Mutant(Case(mutant), Case(neighbour), still_passes=("structure", "surface"))
 
 
@@ -348,24 +349,24 @@ OCTAHEDRON = [*POLES, (5, 0, 0), (0, 5, 0), (-5, 0, 0), (0, -5, 0)]
 
 
 @operator("delaunay")
-def flip_2_3(shop):
+def flip_2_3(fixture):
     """a 2-3 flip; harmless: of five cospherical vertices"""
     two = MeditMesh(BIPYRAMID, [[2, 3, 4, 0, 1], [2, 4, 3, 1, 1]])
-    return flip_mutant(shop, flips_2_3, two)
+    return flip_mutant(fixture, flips_2_3, two)
 
 
 @operator("delaunay")
-def flip_3_2(shop):
+def flip_3_2(fixture):
     """a 3-2 flip; harmless: of five cospherical vertices"""
     three = MeditMesh(BIPYRAMID, [[2, 3, 1, 0, 1], [3, 4, 1, 0, 1], [4, 2, 1, 0, 1]])
-    return flip_mutant(shop, flips_3_2, three)
+    return flip_mutant(fixture, flips_3_2, three)
 
 
 @operator("delaunay")
-def flip_4_4(shop):
+def flip_4_4(fixture):
     """a 4-4 flip; harmless: of an octahedron, whose vertices are cospherical"""
     four = MeditMesh(OCTAHEDRON, [[2, 3, 1, 0, 1], [3, 4, 1, 0, 1], [4, 5, 1, 0, 1], [5, 2, 1, 0, 1]])
-    return flip_mutant(shop, flips_4_4, four)
+    return flip_mutant(fixture, flips_4_4, four)
 
 
 @operator("delaunay")
@@ -377,10 +378,10 @@ def one_ulp(_):
 
 
 @operator("delaunay")
-def moved_by_epsilon(shop):
+def moved_by_epsilon(fixture):
     """every vertex moved at random by about 0.3 mm; harmless: by about 1e-9 mm"""
-    far, near = shop.base.copy(), shop.base.copy()
-    steps = shop.random.normal(size=shop.base.vertices.shape)
+    far, near = fixture.base.copy(), fixture.base.copy()
+    steps = fixture.random.normal(size=fixture.base.vertices.shape)
     far.vertices += 0.3 * steps
     near.vertices += 1e-9 * steps
     return Mutant(Case(far), Case(near))
@@ -395,9 +396,9 @@ def foreign_vertex_in_a_ball(_):
 
 
 @operator("delaunay")
-def rounded_digits(shop):
+def rounded_digits(fixture):
     """coordinates rounded to 3 digits; harmless: to 15"""
-    return Mutant(Case(shop.base, digits=3), Case(shop.base, digits=15))
+    return Mutant(Case(fixture.base, digits=3), Case(fixture.base, digits=15))
 
 
 @operator("delaunay")
@@ -529,10 +530,10 @@ def peel_to_29_9_degrees(_):
 
 
 @operator("surface")
-def peel_with_stale_facets(shop):
+def peel_with_stale_facets(fixture):
     """a cell given to the label across an interface, with the old list of facets; harmless: without a list"""
-    mesh = shop.base.copy()
-    c, d = next((c, d) for c, _, d, _, _ in shop.facet_pairs(mesh) if mesh.cells[c, 4] != mesh.cells[d, 4])
+    mesh = fixture.base.copy()
+    c, d = next((c, d) for c, _, d, _, _ in fixture.facet_pairs(mesh) if mesh.cells[c, 4] != mesh.cells[d, 4])
     mesh.cells[c, 4] = mesh.cells[d, 4]
     unlisted = mesh.copy()
     unlisted.facets = unlisted.facets[:0]
@@ -555,12 +556,12 @@ def radius_over_its_label(_):
 
 
 @operator("size")
-def radius_over_its_place(shop):
+def radius_over_its_place(fixture):
     """a cell over the size image's mean at its circumcenter by a thousandth; harmless: under it"""
     def by_place(name, last):
         voxels = np.ones((2, 2, 2))
         voxels[1] = last
-        path = shop.folder / name
+        path = fixture.folder / name
         path.write_bytes(b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
                          b"TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = -1 -1 -1\nElementSpacing = 2 2 2\n"
                          b"DimSize = 2 2 2\nElementType = MET_DOUBLE\nElementDataFile = LOCAL\n" + voxels.tobytes())
@@ -570,71 +571,71 @@ def radius_over_its_place(shop):
                   Case(tetrahedron(REGULAR), by_place("under.mha", middle + 0.001)))
 
 
-def voxel_halves(shop):
+def voxel_halves(fixture):
     """Returns an image of unit voxels: label 1 at the regular cell's circumcenter, label 2 from 1.5 mm beside it on."""
     voxels = np.ones((4, 4, 8))
     voxels[:, :, 4:] = 2
-    path = shop.folder / "halves.inr"
+    path = fixture.folder / "halves.inr"
     write_inr(path, voxels, offset=-2)
     return ["--image", str(path)]
 
 
 @operator("size")
-def radius_over_the_bound_near(shop):
+def radius_over_the_bound_near(fixture):
     """a cell over its bound at exactly the width from an interface; harmless: a width less by an ulp"""
     def near(width):
-        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,2=1.7:{width!r}"])
+        return Case(tetrahedron(REGULAR), [*voxel_halves(fixture), "--size-near", f"1,2=1.7:{width!r}"])
     return Mutant(near(1.5), near(float(np.nextafter(1.5, 0))))
 
 
 @operator("size")
-def radius_over_its_grade(shop):
+def radius_over_its_grade(fixture):
     """a cell over a bound that grows from 2 mm away, and over the slack, by a thousandth; harmless: under it"""
     def growing(radius):
-        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--radius-of", f"2={radius!r}", "--grade", "0.25"])
+        return Case(tetrahedron(REGULAR), [*voxel_halves(fixture), "--radius-of", f"2={radius!r}", "--grade", "0.25"])
     bound = math.sqrt(3) - 0.25 * (2 + math.sqrt(3) / 2)
     return Mutant(growing(bound - 0.001), growing(bound + 0.001))
 
 
 @operator(None, exit_code=2)
-def near_a_label_that_is_not_there(shop):
+def near_a_label_that_is_not_there(fixture):
     """a bound near a label that the image does not have; harmless: near a label that it has"""
     def near(label):
-        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,{label}=9"])
+        return Case(tetrahedron(REGULAR), [*voxel_halves(fixture), "--size-near", f"1,{label}=9"])
     return Mutant(near(3), near(2))
 
 
 @operator("labels")
-def swapped_labels(shop):
+def swapped_labels(fixture):
     """two labels swapped; harmless: not swapped"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.cells[:, 4] = np.select([mesh.cells[:, 4] == 1, mesh.cells[:, 4] == 2], [2, 1], mesh.cells[:, 4])
-    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+    return Mutant(Case(mesh, fixture.with_image), Case(fixture.base, fixture.with_image))
 
 
 @operator("labels")
-def one_wrong_label(shop):
+def one_wrong_label(fixture):
     """one cell with another label; harmless: with its own"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.cells[50, 4] = 3 if mesh.cells[50, 4] != 3 else 1
-    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+    return Mutant(Case(mesh, fixture.with_image), Case(fixture.base, fixture.with_image))
 
 
 @operator("labels")
-def half_voxel_shift(shop):
+def half_voxel_shift(fixture):
     """all vertices shifted by half a voxel; harmless: by 1e-9 mm"""
-    far, near = shop.base.copy(), shop.base.copy()
+    far, near = fixture.base.copy(), fixture.base.copy()
     far.vertices += 0.5 * 180 / 41
     near.vertices += 1e-9
-    return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+    return Mutant(Case(far, fixture.with_image), Case(near, fixture.with_image))
 
 
 @operator("labels")
-def called_smoothed(shop):
+def called_smoothed(fixture):
     """a mesh of the image's voxels whose file states smoothing; harmless: it states none"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.comments = [*mesh.comments, "# promise smoothed 6.5\n"]
-    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+    return Mutant(Case(mesh, fixture.with_image), Case(fixture.base, fixture.with_image))
 
 
 @operator(None, exit_code=2)
@@ -648,82 +649,82 @@ def smoothed_by_nothing(_):
 
 
 @operator("labels")
-def mirrored_axis(shop):
+def mirrored_axis(fixture):
     """x mirrored, cells reversed to stay positive; harmless: coordinates in LPS, with --space LPS"""
-    mirrored, lps = shop.base.copy(), shop.base.copy()
+    mirrored, lps = fixture.base.copy(), fixture.base.copy()
     mirrored.vertices[:, 0] *= -1
     mirrored.cells[:, [0, 1]] = mirrored.cells[:, [1, 0]]
     lps.vertices[:, :2] *= -1
-    return Mutant(Case(mirrored, shop.with_image), Case(lps, [*shop.with_image, "--space", "LPS"]))
+    return Mutant(Case(mirrored, fixture.with_image), Case(lps, [*fixture.with_image, "--space", "LPS"]))
 
 
 @operator("labels")
-def dropped_component(shop):
+def dropped_component(fixture):
     """all cells of a label dropped; harmless: none dropped"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.cells = mesh.cells[mesh.cells[:, 4] != 1]
     mesh.facets = mesh.facets[:0]
-    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+    return Mutant(Case(mesh, fixture.with_image), Case(fixture.base, fixture.with_image))
 
 
 @operator("surface")
-def dropped_cell(shop):
+def dropped_cell(fixture):
     """an inner cell dropped, its hole not among the listed facets; harmless: no facets listed, no cell dropped"""
-    mesh = shop.base.copy()
-    boundary = {c for c, *_ in shop.boundary_facets(mesh)}
+    mesh = fixture.base.copy()
+    boundary = {c for c, *_ in fixture.boundary_facets(mesh)}
     inner = next(c for c in range(len(mesh.cells)) if c not in boundary)
     mesh.cells = np.delete(mesh.cells, inner, axis=0)
-    unlisted = shop.base.copy()
+    unlisted = fixture.base.copy()
     unlisted.facets = unlisted.facets[:0]
     return Mutant(Case(mesh), Case(unlisted))
 
 
 @operator("surface")
-def dropped_facet(shop):
+def dropped_facet(fixture):
     """a boundary facet not listed; harmless: listed last"""
-    mesh, last = shop.base.copy(), shop.base.copy()
+    mesh, last = fixture.base.copy(), fixture.base.copy()
     mesh.facets = mesh.facets[1:]
     last.facets = np.roll(last.facets, -1, axis=0)
     return Mutant(Case(mesh), Case(last))
 
 
 @operator("surface")
-def stale_facet_tag(shop):
+def stale_facet_tag(fixture):
     """a facet listed with another pair of labels; harmless: with its own"""
-    mesh = shop.base.copy()
+    mesh = fixture.base.copy()
     mesh.facets[0, 3] = 2 if mesh.facets[0, 3] != 2 else 1
-    return Mutant(Case(mesh), Case(shop.base))
+    return Mutant(Case(mesh), Case(fixture.base))
 
 
 @operator("fidelity")
-def shrunk(shop):
+def shrunk(fixture):
     """a mesh shrunk by a fifth; harmless: by 1e-6"""
-    far, near = shop.base.copy(), shop.base.copy()
+    far, near = fixture.base.copy(), fixture.base.copy()
     far.vertices *= 0.8
     near.vertices *= 1 - 1e-6
-    return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+    return Mutant(Case(far, fixture.with_image), Case(near, fixture.with_image))
 
 
 @operator("fidelity")
-def sampled_coarsely(shop):
+def sampled_coarsely(fixture):
     """a mesh whose surfaces are sampled every six voxels; harmless: the same with --delta"""
-    coarse = shop.meshed("--radius", "90", "--delta", "25")
-    return Mutant(Case(coarse, shop.with_image), Case(coarse, [*shop.with_image, "--delta", "25"]))
+    coarse = fixture.meshed("--radius", "90", "--delta", "25")
+    return Mutant(Case(coarse, fixture.with_image), Case(coarse, [*fixture.with_image, "--delta", "25"]))
 
 
 @operator(None, exit_code=2)
-def truncated_file(shop):
+def truncated_file(fixture):
     """the file cut off in its cells; harmless: the whole file"""
-    path = shop.folder / "whole.mesh"
-    shop.base.write(path)
+    path = fixture.folder / "whole.mesh"
+    fixture.base.write(path)
     text = path.read_text()
-    return Mutant(Case(text[:2 * len(text) // 3]), Case(shop.base))
+    return Mutant(Case(text[:2 * len(text) // 3]), Case(fixture.base))
 
 
 @operator("structure")
-def cell_in_two_pieces(shop):
+def cell_in_two_pieces(fixture):
     """a cell in two of three pieces of a mesh; harmless: in one"""
-    mesh, apart = MeshInPieces(shop.base, 3), MeshInPieces(shop.base, 3)
+    mesh, apart = MeshInPieces(fixture.base, 3), MeshInPieces(fixture.base, 3)
     first, second = mesh.pieces[:2]
     known = set(second.ids)
     cell = next(cell for cell in first.cells if sum(first.ids[v] in known for v in cell[:4]) >= 3)
@@ -737,9 +738,9 @@ def cell_in_two_pieces(shop):
 
 
 @operator("surface")
-def cell_missing_between_pieces(shop):
+def cell_missing_between_pieces(fixture):
     """a cell at the border of two pieces in neither; harmless: in one, whose cells are reordered"""
-    mesh, moved = MeshInPieces(shop.base, 3), MeshInPieces(shop.base, 3)
+    mesh, moved = MeshInPieces(fixture.base, 3), MeshInPieces(fixture.base, 3)
     first, shared = mesh.pieces[0], set(mesh.pieces[1].ids)
     border = [c for c, cell in enumerate(first.cells) if sum(first.ids[v] in shared for v in cell[:4]) == 3]
     mesh.pieces[0].cells = np.delete(first.cells, border[0], axis=0)
@@ -748,9 +749,9 @@ def cell_missing_between_pieces(shop):
 
 
 @operator("conformity")
-def border_cut_otherwise(shop):
+def border_cut_otherwise(fixture):
     """two points for one vertex on either side of a border; harmless: one point, with the greatest number"""
-    mesh, renumbered = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
+    mesh, renumbered = MeshInPieces(fixture.base, 2), MeshInPieces(fixture.base, 2)
     shared, greatest = mesh.shared_id(), max(piece.ids.max() for piece in mesh.pieces)
     second = mesh.pieces[1]
     second.ids[second.ids == shared] = greatest + 1
@@ -761,9 +762,9 @@ def border_cut_otherwise(shop):
 
 
 @operator(None, exit_code=2)
-def vertex_moved_in_one_piece(shop):
+def vertex_moved_in_one_piece(fixture):
     """a shared vertex moved by an ulp in one piece; harmless: in both pieces"""
-    mesh, both = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
+    mesh, both = MeshInPieces(fixture.base, 2), MeshInPieces(fixture.base, 2)
     shared = mesh.shared_id()
     for piece in [mesh.pieces[1], *both.pieces]:
         piece.points[piece.ids == shared] = np.nextafter(piece.points[piece.ids == shared], np.inf)

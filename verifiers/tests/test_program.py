@@ -110,7 +110,7 @@ class ProgramTest(unittest.TestCase):
                                  capture_output=True, text=True, timeout=60, check=False)
         self.assert_exit(process, 0)
 
-    def test_a_left_handed_mesh_is_told_apart(self):
+    def test_a_left_handed_mesh_is_distinguished(self):
         mesh = kuhn_cubes(2, 1, 1)
         mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
         mesh.write(self.mesh)
@@ -170,8 +170,8 @@ class ProgramTest(unittest.TestCase):
             self.assertEqual(report["options"]["smooth_mm"], 1.25 if options else None)
             self.assertEqual(report["mesh"]["smoothing_mm"], 0.75 if comments else None)
             self.assertEqual("mesh_to_voxels" in report["claims"]["fidelity"]["details"], width is not None)
-            told = f"image smoothed by {width} mm, as " + ("--smooth says" if options else "the mesh's file says")
-            self.assertEqual(told in process.stdout, width is not None, process.stdout)
+            line = f"image smoothed by {width} mm, as " + ("--smooth states" if options else "the mesh file states")
+            self.assertEqual(line in process.stdout, width is not None, process.stdout)
         for width, fault in (("8.5", "image.inr: cannot be smoothed by 8.5 mm"), ("8", "less than 8 mm"),
                              ("0", "--smooth"), ("nan", "--smooth"), ("-1", "--smooth")):
             process = self.verify(*claims, "--smooth", width)
@@ -216,7 +216,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_exit(self.verify(*size, "--size-near", "1,2=9", "--space", "voxel"), 1)
         self.assertEqual(self.read_report()["claims"]["size"]["verdict"], "not_run")
 
-    def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
+    def test_a_meta_image_whose_header_states_an_old_stream_size_is_read_with_a_warning(self):
         voxels = np.random.default_rng(5).choice([1, 2], size=(6, 7, 8)).astype(np.uint8)
         meshed_voxels(voxels, {}).write(self.mesh)
         image = self.folder / "image.mha"
@@ -254,7 +254,7 @@ class ProgramTest(unittest.TestCase):
                                  (["--image", "absent.nii", "--grade", "0"], "--grade"),
                                  (["--image", "absent.nii", "--grade", "inf"], "--grade"),
                                  (["--image", "absent.nii", "--size-near", "1=2"], "--size-near: '1=2' is not"),
-                                 (["--image", "absent.nii", "--size-near", "liver,0=2"], "'liver' is no label"),
+                                 (["--image", "absent.nii", "--size-near", "liver,0=2"], "'liver' is not a label"),
                                  (["--image", "absent.nii", "--size-near", "1,0=2:0"], "--size-near 1,0=2:0: '0'"),
                                  (["--image", "absent.nii", "--labels", "7-3"], "--labels: the range '7-3'"),
                                  (["--image", "absent.nii", "--merge", "2,3"], "--merge: '2,3' is not VALUES=NAME"),

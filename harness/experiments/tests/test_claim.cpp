@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -56,7 +56,7 @@ TEST(Claim, OtherKindsHaveTheirOwnKeys) {
       "direction = 'falls'\nfactor_per_doubling = 1.4\n");
   EXPECT_EQ(trend.along, "threads");
   EXPECT_FALSE(trend.grows);
-  EXPECT_EQ(describe_bound(trend), "falls by at least 1.4 a doubling");
+  EXPECT_EQ(describe_bound(trend), "falls by at least 1.4 per doubling");
   const Claim share = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 0.9\n");
   EXPECT_EQ(describe_bound(share), "at least 0.9");
 }

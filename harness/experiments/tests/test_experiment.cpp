@@ -134,7 +134,7 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "delta_mm = -1\n", "some.toml:8:12:", "delta_mm"},
       {kHead + kTrial + "min_dihedral = -8\n", "some.toml:8:16:", "min_dihedral"},
       {kHead + kTrial + "optimize = 8\n", "some.toml:8:12:", "optimize"},
-      {kHead + kTrial + "mesher = 'cgal'\noptimize = true\n", "some.toml:9:12:", "podm alone"},
+      {kHead + kTrial + "mesher = 'cgal'\noptimize = true\n", "some.toml:9:12:", "podm only"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nsolve = true\n", "some.toml:10:9:", "exclude"},
       {kHead + kTrial + "threads = 0\n", "some.toml:8:11:", "threads"},
       {kHead + kTrial + "target_elements = -5\n", "some.toml:8:19:", "target_elements"},
@@ -172,7 +172,7 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2'\n", "some.toml:10:11:", "12.5"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2,0'\n", "some.toml:10:11:", "12.5"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nreplay = true\n", "some.toml:10:10:", "exclude"},
-      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nmesher = 'cgal'\n", "some.toml:8:9:", "podm alone"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nmesher = 'cgal'\n", "some.toml:8:9:", "podm only"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
       {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
       {kHead, "some.toml:1:", "trials"},  // absent keys
@@ -318,7 +318,7 @@ TEST_F(ExperimentTest, OtherMeshersTakeRadiusDeltaAndThreadsAlone) {
   const std::string peer = kHead + kTrial + "mesher = [\"podm\", \"other\"]\nradius_mm = 2\n";
   EXPECT_EQ(read(peer + "delta_mm = 1\nthreads = 2\n").trials.size(), 2u);
   const std::string what = fault(peer + "pin = true\n");
-  EXPECT_NE(what.find("pin is an option of podm alone"), std::string::npos) << what;
+  EXPECT_NE(what.find("pin is an option of podm only"), std::string::npos) << what;
 }
 
 // The experiments in experiments/ are complete, and each has trials in the tiers kick-tires and default.

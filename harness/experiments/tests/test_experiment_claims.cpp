@@ -1,4 +1,4 @@
-// Tests every claim of every experiment in experiments/ with rows made up from the claim's own form: rows
+// Tests every claim of every experiment in experiments/ with rows synthesized from the claim's own form: rows
 // that satisfy it, rows that break it, and rows that decide nothing. test_judge.cpp tests the kinds of
 // claims, test_measure.cpp the measures.
 #include <fnmatch.h>
@@ -10,7 +10,7 @@
 #include "experiments/claim_names.h"
 #include "experiments/judge.h"
 #include "options/option_matrix.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -152,9 +152,9 @@ const std::map<std::string, SetValue> kSetters = {
      }},
     {"poor_share_left",
      [](Row& row, double value) {
-       PerturbedRecord& told = mesh_of(row).perturbed.emplace();
-       told.before.with_free_vertex = many(1);
-       told.after.with_free_vertex = many(value);
+       PerturbedRecord& perturbed = mesh_of(row).perturbed.emplace();
+       perturbed.before.with_free_vertex = many(1);
+       perturbed.after.with_free_vertex = many(value);
      }},
     {"beyond_bounds_per_million",
      [](Row& row, double value) {
@@ -249,7 +249,7 @@ Rows rows_of(const Experiment& experiment, const Claim& claim) {
       asked.back()[number] = processors;
     }
     for (const Json& options : asked) {
-      rows.push_back(made_up_row(trial.name, options));
+      rows.push_back(synthetic_row(trial.name, options));
       rows.back().input.name = trial.image;
       const int cores = std::max(claim.needs_cores, 16);
       rows.back().environment.packages = std::uint64_t{1};
@@ -302,23 +302,23 @@ std::vector<double> beyond(const Claim& claim) {
   return values;
 }
 
-std::string told(const Judgement& judgement) {
+std::string describe(const Judgement& judgement) {
   return to_string(judgement.verdict) + ": " + judgement.reason;
 }
 
 void expect_open(const Claim& claim, const Rows& rows, const std::string& why) {
   const Judgement judgement = judge(claim, rows);
-  EXPECT_EQ(judgement.verdict, Verdict::kCannotBeDecided) << why << ": " << told(judgement);
+  EXPECT_EQ(judgement.verdict, Verdict::kCannotBeDecided) << why << ": " << describe(judgement);
   EXPECT_FALSE(judgement.value) << why;
   EXPECT_NE(judgement.reason, "") << why;
 }
 
 void expect_either_way(const Experiment& experiment, const Claim& claim) {
   const Rows rows = rows_of(experiment, claim), fine = with_value(claim, rows, within(claim));
-  EXPECT_EQ(judge(claim, fine).verdict, Verdict::kHolds) << told(judge(claim, fine));
+  EXPECT_EQ(judge(claim, fine).verdict, Verdict::kHolds) << describe(judge(claim, fine));
   for (const double value : beyond(claim)) {
     const Judgement judgement = judge(claim, with_value(claim, rows, value));
-    EXPECT_EQ(judgement.verdict, Verdict::kDoesNotHold) << "by " << value << ": " << told(judgement);
+    EXPECT_EQ(judgement.verdict, Verdict::kDoesNotHold) << "by " << value << ": " << describe(judgement);
   }
 }
 

@@ -1,4 +1,4 @@
-// Tests of the rounds of an experiment whose machine changes its speed, with a made-up mesher and made-up
+// Tests of the rounds of an experiment whose machine changes its speed, with a synthetic mesher and synthetic
 // probes.
 #include "experiments/experiment_run.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -67,7 +67,7 @@ TEST(JudgeBound, OfFaultsIsAboutEachRepeatAndUnmetRowsToo) {
       read_claim_of("basis = 'any'\nkind = 'bound'\nvalue = 'guarantee_misses'\nat_most = 0\n");
   Rows rows;
   for (int repeat = 1; repeat <= 3; ++repeat) {
-    rows.push_back(made_up_row("1M", {}, repeat));
+    rows.push_back(synthetic_row("1M", {}, repeat));
     mesh_of(rows.back()).guarantees = {{"radius_edge", 0}, {"facet_angle", 0}};
   }
   EXPECT_EQ(judge(claim, rows).verdict, kHolds);
@@ -200,7 +200,8 @@ TEST(JudgeRatio, OverNothingIsInfiniteAndOfNothingIsOne) {
       "basis = 'measured'\nkind = 'ratio'\nvalue = 'lost_seconds'\nof = {contention = 'local'}\n"
       "over = {contention = 'random'}\nat_most = 1.1\n");
   const auto rows = [](double local, double random) {
-    Rows made{made_up_row("1M", {{"contention", "local"}}), made_up_row("1M", {{"contention", "random"}})};
+    Rows made{synthetic_row("1M", {{"contention", "local"}}),
+              synthetic_row("1M", {{"contention", "random"}})};
     set_overhead(made[0], local, 0, 5);
     set_overhead(made[1], random, 0, 0);
     return made;
@@ -229,7 +230,7 @@ TEST(JudgeOrder, OneSeriesIsAboveTheOtherInEveryGroup) {
   EXPECT_EQ(verdict_of(claim, on_two_inputs), kFails);
 }
 
-TEST(JudgeTrend, FallsByAFactorADoublingUpToOneSocket) {
+TEST(JudgeTrend, FallsByAFactorPerDoublingUpToOneSocket) {
   const Claim claim = read_claim_of(R"(
 basis = "measured"
 kind = "trend"
@@ -266,7 +267,7 @@ TEST(JudgeTrend, WithoutAFactorMayRestOnTheWayButNotTurn) {
     Rows made;
     double size = 10;
     for (const int number : numbers) {
-      made.push_back(made_up_row("1M", {{"leaf_size", size}}));
+      made.push_back(synthetic_row("1M", {{"leaf_size", size}}));
       mesh_of(made.back()).outcomes.emplace().out_of_leaf = static_cast<std::uint64_t>(number);
       size *= 2;
     }
@@ -283,20 +284,20 @@ TEST(JudgeShare, OfTrialsThatEnded) {
   const auto claim_of = [](const std::string& least) {
     return read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = " + least + "\n");
   };
-  const Rows ended(3, made_up_row("1M", {}));
+  const Rows ended(3, synthetic_row("1M", {}));
   EXPECT_EQ(verdict_of(claim_of("1"), ended), kHolds);
-  const Rows rows = ended + Rows{failed(made_up_row("1M", {{"contention", "local"}}))};
+  const Rows rows = ended + Rows{failed(synthetic_row("1M", {{"contention", "local"}}))};
   EXPECT_EQ(verdict_of(claim_of("1"), rows), kFails);
   EXPECT_EQ(judged(claim_of("1"), rows).value, 0.75);
   EXPECT_TRUE(has(judged(claim_of("1"), rows).reason, "18 of 24, not 1M"));
   EXPECT_EQ(verdict_of(claim_of("0.75"), rows), kHolds);
 }
 
-TEST(JudgeShare, ARefutationIsNotTakenBackByRowsThatCannotTell) {
+TEST(JudgeShare, ARefutationStandsBesideRowsThatDecideNothing) {
   const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'replay_equal'\nat_least = 1\n");
   using enum Replay::End;
   const auto replayed = [](std::optional<Replay::End> end) {
-    Row row = made_up_row("1M", {});
+    Row row = synthetic_row("1M", {});
     if (end) row.replay = {*end, ""};
     return row;
   };
@@ -386,7 +387,7 @@ TEST(JudgeSizes, OneOfTooFewRoundsIsSetAsideWhereItsMedianAgrees) {
   const Judgement fine = judge(claim, six + rows_of_size("0.1M", 1));
   EXPECT_EQ(fine.verdict, kHolds);
   EXPECT_EQ(fine.sizes, (std::vector<std::string>{"1M"}));
-  EXPECT_TRUE(has(fine.reason, "of too few rounds: 0.1M")) << fine.reason;
+  EXPECT_TRUE(has(fine.reason, "too few rounds: 0.1M")) << fine.reason;
   EXPECT_EQ(judge(claim, six + rows_of_size("0.1M", 2)).verdict, kUnclear)
       << "one round is against the claim";
   EXPECT_EQ(judge(claim, rows_of_size("1M", 1) + rows_of_size("0.1M", 1)).verdict, kUnclear);
@@ -435,7 +436,7 @@ TEST(JudgeInterval, OfFewRoundsResolvesNothingHoweverClear) {
 TEST(JudgeInterval, IsNotNeededOfWhatIsTheSameInEachRun) {
   const std::string bound = "kind = 'bound'\nvalue = 'deferred_operations'\nat_most = 5\nbasis = ";
   const auto row = [](const Json& asked) {
-    Rows made{made_up_row("1M", asked)};
+    Rows made{synthetic_row("1M", asked)};
     mesh_of(made[0]).outcomes.emplace().out_of_leaf = 4;
     return made;
   };
@@ -462,7 +463,7 @@ TEST(JudgeLoad, OtherWorkLeavesUnresolvedWhatVaries) {
 TEST(JudgeLoad, FaultsOfAMeshCountOnABusyMachineToo) {
   const Claim claim =
       read_claim_of("basis = 'any'\nkind = 'bound'\nvalue = 'guarantee_misses'\nat_most = 0\n");
-  Rows rows{made_up_row("1M", {})};
+  Rows rows{synthetic_row("1M", {})};
   rows[0].environment.busy_elsewhere = 16.0;
   mesh_of(rows[0]).guarantees = {{"radius_edge", 1}};
   EXPECT_EQ(judge(claim, rows).verdict, kFails);
@@ -470,13 +471,13 @@ TEST(JudgeLoad, FaultsOfAMeshCountOnABusyMachineToo) {
 
 TEST(JudgeLoad, ATrialThatDidNotEndOnABusyMachineRefutesNothing) {
   const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\n");
-  Rows rows{made_up_row("1M", {}), failed(made_up_row("1M", {}))};
+  Rows rows{synthetic_row("1M", {}), failed(synthetic_row("1M", {}))};
   EXPECT_EQ(judge(claim, rows).verdict, kFails);
   rows[1].environment.busy_elsewhere = 16.0;
   const Judgement judgement = judge(claim, rows);
   EXPECT_EQ(judgement.verdict, kUnclear);
   EXPECT_TRUE(has(judgement.reason, "1M: other work kept 16.0 processors busy")) << judgement.reason;
-  rows.push_back(failed(made_up_row("1M", {}), Status::kFailed));
+  rows.push_back(failed(synthetic_row("1M", {}), Status::kFailed));
   EXPECT_EQ(judge(claim, rows).verdict, kFails) << "a crash is no matter of time";
 }
 
@@ -516,7 +517,7 @@ TEST(Judge, AGroupThatBreaksTheClaimDecidesAndOneThatLacksRowsLeavesItOpen) {
 
 TEST(Judge, EachValueOfAListNeedsRowsAndARangeDoesNot) {
   const std::string share = "basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\nwhere = ";
-  const Rows rows{made_up_row("1M", {{"contention", "local"}, {"threads", 4}})};
+  const Rows rows{synthetic_row("1M", {{"contention", "local"}, {"threads", 4}})};
   EXPECT_EQ(verdict_of(read_claim_of(share + "{contention = 'local'}\n"), rows), kHolds);
   const Judgement judgement = judged(read_claim_of(share + "{contention = ['local', 'random']}\n"), rows);
   EXPECT_EQ(judgement.verdict, kOpen);
@@ -556,9 +557,9 @@ TEST(Judge, AnOptionThatIsNotGivenIsNone) {
 
 TEST(Judge, RowsOfAnotherBasisNeverEnter) {
   const std::string lines = "kind = 'bound'\nvalue = 'lost_seconds'\nat_most = 1\nbasis = ";
-  Rows rows{made_up_row("1M", {}), made_up_row("1M", {{"executor", "virtual"}}),
-            made_up_row("1M", {{"topology", "machine.xml"}}),
-            made_up_row("1M", {{"counters", "cachegrind"}})};
+  Rows rows{synthetic_row("1M", {}), synthetic_row("1M", {{"executor", "virtual"}}),
+            synthetic_row("1M", {{"topology", "machine.xml"}}),
+            synthetic_row("1M", {{"counters", "cachegrind"}})};
   for (Row& row : rows) set_overhead(row, 5, 0, 0);
   set_overhead(rows[0], 0.5, 0, 0);
   const Judgement measured = judged(read_claim_of(lines + "'measured'\n"), rows);

@@ -5,7 +5,7 @@
 
 #include "rows/results_file.h"
 #include "tests/bench_test.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {

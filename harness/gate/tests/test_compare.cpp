@@ -6,7 +6,7 @@
 #include "process/process.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Rows = std::vector<Row>;
 
 Row row(double seconds, int threads = 1) {
-  Row made = made_up_row("some", {{"threads", threads}});
+  Row made = synthetic_row("some", {{"threads", threads}});
   made.input.name = made.input.path;
   made.process.peak_rss_bytes = 5000;
   MeshRecord& mesh = mesh_of(made);
@@ -88,7 +88,7 @@ TEST(Compare, LostVerdictsAndStatusComeFirstAndAreWorse) {
   }
 }
 
-TEST(Compare, AnotherMeshIsToldOnOneThreadOnly) {
+TEST(Compare, AnotherMeshIsReportedOnOneThreadOnly) {
   for (const int threads : {1, 2}) {
     Row other = row(2, threads);
     mesh_of(other).mesh_sha256 = "bb";
@@ -149,7 +149,7 @@ class CompareCommand : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CompareCommand, ExitCodeTells) {
+TEST_F(CompareCommand, ExitCodeReportsAWorseProgram) {
   const std::string a = file("a", repeats(2)), b = file("b", repeats(2.3));
   EXPECT_EQ(run(a, a), 0);
   EXPECT_EQ(run(b, a), 0);

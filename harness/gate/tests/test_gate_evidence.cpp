@@ -40,7 +40,7 @@ TEST(ReplayedAnswers, ChangeWhereTheRoundsDo) {
   EXPECT_EQ(answers[1].answer, Answer::kNotSlower);
 }
 
-GateRound made_up_round(int number) {
+GateRound synthetic_round(int number) {
   GateRound round;
   round.round = number;
   round.trial = {"t", "phantom:torus", 3};
@@ -53,7 +53,7 @@ GateRound made_up_round(int number) {
 
 TEST(MeasuredTries, CompareTheSecondsOfTheClockAskedForWithTheBaseOfTheRound) {
   std::vector<GateRound> rounds;
-  for (int i = 0; i < 4 * kLooks.front(); ++i) rounds.push_back(made_up_round(i + 1));
+  for (int i = 0; i < 4 * kLooks.front(); ++i) rounds.push_back(synthetic_round(i + 1));
   const std::vector<GateTries> all = measured_tries(rounds);
   EXPECT_EQ(all.size(), 4 * kPlantedPercent.size());
   for (const GateTries& row : all) {
@@ -114,39 +114,39 @@ TEST_F(GateRoundsTest, RecordedHaveEachSlowdownOnceAndGoOnWhereTheyEnded) {
 }
 
 TEST_F(GateRoundsTest, OfNoWholeRoundAreRefusedByTheirLine) {
-  write({made_up_round(1), made_up_round(2)});
+  write({synthetic_round(1), synthetic_round(2)});
   EXPECT_EQ(read_gate_rounds(path_).size(), 2u);
   std::ofstream(path_, std::ios::app) << "{\"schema\":1\n";
   expect_refused_at(3, "");
-  GateRound other = made_up_round(2);
+  GateRound other = synthetic_round(2);
   other.processes.pop_back();
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "number of processes");
-  other = made_up_round(2);
+  other = synthetic_round(2);
   other.processes[1].planted_percent = 4;
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "one head with 0 % planted");
-  other = made_up_round(2);
+  other = synthetic_round(2);
   other.processes[0].cpu_s = 0;
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "one base");
   EXPECT_THROW(read_gate_rounds(folder_ / "absent"), InputError);
 }
 
 TEST_F(GateRoundsTest, OfTwoMachinesMeshersOrTrialsAreRefused) {
-  GateRound other = made_up_round(2);
+  GateRound other = synthetic_round(2);
   other.environment.usable_processors = 99;
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "another machine");
-  other = made_up_round(2);
+  other = synthetic_round(2);
   other.podm.sha256 = "bb";
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "another mesher");
-  other = made_up_round(2);
+  other = synthetic_round(2);
   other.trial.radius_mm = 4;
-  write({made_up_round(1), other});
+  write({synthetic_round(1), other});
   expect_refused_at(2, "another trial");
-  write({made_up_round(1)});
+  write({synthetic_round(1)});
   EXPECT_THROW(record_gate_rounds(recording(1), {}), InputError) << "the rounds are of another machine";
 }
 

@@ -1,4 +1,4 @@
-// Tests of the load by other work, with made-up files of the kernel and on this machine.
+// Tests of the load by other work, with synthetic files of the kernel and on this machine.
 #include "machine/load_watch.h"
 
 #include <gtest/gtest.h>

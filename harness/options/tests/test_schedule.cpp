@@ -190,7 +190,7 @@ TEST(Expectations, ComeFromRowsOfTheTrialThenFromTheFile) {
   EXPECT_DOUBLE_EQ(*known.of(trial).memory_bytes, 15000);
   EXPECT_DOUBLE_EQ(*known.of(trial).disk_bytes, 700);
   trial.image = "phantom:sphere";
-  EXPECT_DOUBLE_EQ(*known.of(trial).seconds, 20) << "rows of another image tell nothing";
+  EXPECT_DOUBLE_EQ(*known.of(trial).seconds, 20) << "rows of another image decide nothing";
 }
 
 TEST(Expectations, ShareTheMinutesByElements) {

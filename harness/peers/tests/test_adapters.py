@@ -1,4 +1,4 @@
-"""Tests of the peers' adapters with made-up programs: the runs of podm that they request, the seconds they count."""
+"""Tests of the peers' adapters with synthetic programs: the runs of podm that they request, the seconds they count."""
 import json
 import pathlib
 import subprocess

@@ -22,14 +22,14 @@ TEST(Ask, TakesWhatAProgramPrintsWithoutItsLastLineEnds) {
   EXPECT_EQ(ask_shell("true").text, "");
 }
 
-TEST(Ask, TellsWhyThereIsNoAnswer) {
+TEST(Ask, ReportsWhyThereIsNoAnswer) {
   const Reply failed = ask_shell("echo half; echo no such >&2; echo image >&2; exit 3");
   EXPECT_FALSE(failed.succeeded());
   EXPECT_EQ(failed.text, "half");
-  EXPECT_EQ(failed.why_not(), "exit code 3: no such; image");
-  EXPECT_EQ(ask_shell("kill -KILL $$").why_not().rfind("killed by signal 9", 0), 0u);
-  EXPECT_NE(ask({"/absent/program"}).why_not().find("/absent/program"), std::string::npos);
-  EXPECT_EQ(ask_shell("sleep 30", 0.1).why_not().rfind("timed out", 0), 0u);
+  EXPECT_EQ(failed.failure_text(), "exit code 3: no such; image");
+  EXPECT_EQ(ask_shell("kill -KILL $$").failure_text().rfind("killed by signal 9", 0), 0u);
+  EXPECT_NE(ask({"/absent/program"}).failure_text().find("/absent/program"), std::string::npos);
+  EXPECT_EQ(ask_shell("sleep 30", 0.1).failure_text().rfind("timed out", 0), 0u);
 }
 
 TEST(Ask, StopsOnRequest) {

@@ -29,7 +29,7 @@ TEST(Process, ExitCodeIsReported) {
   }
 }
 
-TEST(Process, DeathBySignalIsToldFromAnExit) {
+TEST(Process, DeathBySignalIsDistinguishedFromAnExit) {
   const ProcessOutcome outcome = run_process(shell("kill -SEGV $$"));
   EXPECT_EQ(outcome.end, End::kSignalled);
   EXPECT_EQ(outcome.signal, SIGSEGV);
@@ -119,7 +119,7 @@ TEST(Process, StopRequestEndsTheChildEarly) {
   EXPECT_LT(outcome.wall_s, 10);
 }
 
-TEST(Process, WallAndProcessorTimeAreToldApart) {
+TEST(Process, WallAndProcessorTimeAreDistinguished) {
   const ProcessOutcome asleep = run_process(shell("sleep 0.5"));
   EXPECT_GE(asleep.wall_s, 0.5);
   EXPECT_LT(asleep.user_s + asleep.system_s, 0.4);

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "rows/series.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -43,7 +43,7 @@ TEST(SameMachine, EachPartOfTheIdentityMatters) {
     EXPECT_TRUE(same_machine(identified(other), identified(other)));
     names.insert(machine_name(identified(other)));
   }
-  EXPECT_EQ(names.size(), 8u) << "a name tells what differs";
+  EXPECT_EQ(names.size(), 8u) << "a name states what differs";
 }
 
 TEST(SameMachine, StateIsNoPartOfIt) {
@@ -55,7 +55,7 @@ TEST(SameMachine, StateIsNoPartOfIt) {
   EXPECT_TRUE(same_machine(identified(), later));
 }
 
-TEST(SameMachine, RowsWithoutIdentityAreToldApartByTheirTopology) {
+TEST(SameMachine, RowsWithoutIdentityAreDistinguishedByTheirTopology) {
   Row old = identified(), other = identified();
   old.environment.identity.reset();
   EXPECT_FALSE(same_machine(old, other));
@@ -81,7 +81,7 @@ TEST(Disturbed, IsMoreThanATenthOfEachUsableProcessor) {
   EXPECT_FALSE(is_disturbed(row));
 }
 
-TEST(MachineState, IsToldInSentences) {
+TEST(MachineState, IsDescribedInSentences) {
   std::vector<Row> rows(5, identified());
   EXPECT_TRUE(machine_state(rows).remarks().empty());
   for (Row& row : rows) row.environment.usable_processors = 2;

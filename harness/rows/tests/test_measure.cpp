@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "rows/series.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
 
 // A row in which every measure has another number.
 Row full_row() {
-  Row row = made_up_row("1M", {{"threads", 4}, {"target_elements", 1000}});
+  Row row = synthetic_row("1M", {{"threads", 4}, {"target_elements", 1000}});
   row.mesh = from_json<MeshRecord>(Json::parse(R"({
     "cells": 1200, "vertices": 300, "boundary_facets": 280, "refine_cells_per_second": 300, "stop_reason": "complete",
     "phases_s": {"read": 1, "transform": 2, "allocate": 0.5, "calibrate": 50, "draw": 70, "initial": 1, "octree": 0.25,
@@ -140,7 +140,7 @@ TEST(Measures, FromTheSurfaceAreWhatTheTableSays) {
     EXPECT_DOUBLE_EQ(measure->read(row).number.value(), number) << name;
     EXPECT_FALSE(measure->read(full_row()).number)
         << name << " of a mesher that makes surface and volume in one";
-    EXPECT_FALSE(measure->read(made_up_row("1M", {})).number) << name << " without a mesh";
+    EXPECT_FALSE(measure->read(synthetic_row("1M", {})).number) << name << " without a mesh";
   }
   EXPECT_DOUBLE_EQ(find_measure("whole_seconds")->read(row).number.value(), 10);
   row.mesh->surface_cells = 800;
@@ -205,7 +205,7 @@ TEST(Measures, AreWhatTheTableSays) {
       {"passed", 1, nullptr},
   };
   EXPECT_EQ(std::size(expected) + std::size(kOfRanks) + std::size(kFromSurface), measures().size())
-      << "each measure of the table is told here";
+      << "each measure of the table is listed here";
   for (const auto& [name, number, take] : expected) {
     const Measure* measure = find_measure(name);
     ASSERT_NE(measure, nullptr) << name;
@@ -236,7 +236,7 @@ TEST(Measures, PassOnTheRowsOwnReason) {
   EXPECT_EQ(absence("first_cache_cycles"), "L2 cache: unavailable: no memory");
 }
 
-TEST(Measures, OfLikwidAreItsEventsAndNobodyElses) {
+TEST(Measures, OfLikwidAreItsOwnEvents) {
   const Measure& misses = *find_measure("last_level_misses_per_further_insertion");
   Row row = full_row();  // the kernel's counters are present, too
   row.asked["counters"] = "likwid:CACHE";
@@ -255,7 +255,7 @@ TEST(Measures, OfOneProcessAloneAreItsOwn) {
   EXPECT_EQ(find_measure("side_by_side_refining_cells_per_second")->read(row).number, 200);
 }
 
-TEST(Measures, OfTrialsTellFailedOnesFromUnmetOnes) {
+TEST(Measures, OfTrialsDistinguishFailedOnesFromUnmetOnes) {
   Row row;
   for (const auto& [status, ended, passed] : {std::tuple(Status::kOk, 1, 1),
                                               {Status::kUnmet, 1, 0},

@@ -4,13 +4,13 @@
 #include "process/process.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
 
-const std::string kOne = as_line(made_up_row("one", {}));
-const std::string kTwo = as_line(made_up_row("two", {}));
+const std::string kOne = as_line(synthetic_row("one", {}));
+const std::string kTwo = as_line(synthetic_row("two", {}));
 
 class ResultsFileTest : public testing::Test {
  protected:
@@ -21,8 +21,8 @@ class ResultsFileTest : public testing::Test {
 
 TEST_F(ResultsFileTest, EachAppendAddsOneWholeLineToWhatWasThere) {
   const std::string path = folder_.write("rows.jsonl", kOne);
-  RecordFile(path).append(made_up_row("not UTF-8: \xff", {}));
-  RecordFile(path).append(made_up_row("two\nlines", {}));
+  RecordFile(path).append(synthetic_row("not UTF-8: \xff", {}));
+  RecordFile(path).append(synthetic_row("two\nlines", {}));
   const auto rows = read_rows(path).rows;
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].trial, "one");
@@ -31,7 +31,7 @@ TEST_F(ResultsFileTest, EachAppendAddsOneWholeLineToWhatWasThere) {
 
 TEST_F(ResultsFileTest, UnwritableFileIsRefused) {
   EXPECT_THROW(RecordFile("/no/such/folder/rows.jsonl"), InputError);
-  EXPECT_THROW(RecordFile("/dev/full").append(made_up_row("one", {})), InputError);
+  EXPECT_THROW(RecordFile("/dev/full").append(synthetic_row("one", {})), InputError);
   EXPECT_THROW(write_file("/no/such/folder/file", "text"), InputError);
 }
 

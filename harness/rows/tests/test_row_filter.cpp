@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rows/machine_state.h"
-#include "tests/made_up_rows.h"
+#include "tests/synthetic_rows.h"
 
 namespace podm::bench {
 namespace {
@@ -94,14 +94,14 @@ TEST(RowsToJudge, RowsOfOtherMachinesAreLeftOutAndNamed) {
   const Rows rows{elsewhere, elsewhere, here, simulated("s", "third")};
   EXPECT_EQ(trials_of(rows_to_judge(rows)), "hs");
   EXPECT_EQ(trials_of(rows_of_other_machines(rows)), "ee");
-  const std::string told = describe_left_out(rows_of_other_machines(rows));
-  EXPECT_NE(told.find("2 of some (" + std::string(" family 0 model 2 ")), std::string::npos) << told;
+  const std::string text = describe_left_out(rows_of_other_machines(rows));
+  EXPECT_NE(text.find("2 of some (" + std::string(" family 0 model 2 ")), std::string::npos) << text;
   EXPECT_EQ(describe_left_out(rows_of_other_machines({here})), "");
   EXPECT_TRUE(rows_of_other_machines({}).empty());
 }
 
 TEST(RowOptions, HaveTheirDefaultsAndTheImage) {
-  const Json options = options_of(made_up_row("1M", {{"contention", "local"}}));
+  const Json options = options_of(synthetic_row("1M", {{"contention", "local"}}));
   EXPECT_EQ(option(options, "mesher"), "podm");
   EXPECT_EQ(option(options, "executor"), "threads");
   EXPECT_EQ(option(options, "contention"), "local");

@@ -39,12 +39,12 @@ def _read_vtu(path):
     faults = []
     observer = lambda *_: faults.append(path)
     reader.AddObserver("ErrorEvent", observer)
-    parser_said = vtk.vtkStringOutputWindow()  # the only output of its parser
-    vtk.vtkOutputWindow.SetInstance(parser_said)
+    parser_messages = vtk.vtkStringOutputWindow()  # the only output of its parser
+    vtk.vtkOutputWindow.SetInstance(parser_messages)
     reader.SetFileName(path)
     reader.Update()
     grid = reader.GetOutput()
-    if faults or parser_said.GetOutput() or grid.GetPoints() is None:
+    if faults or parser_messages.GetOutput() or grid.GetPoints() is None:
         raise MeshError("VTK cannot read it as an unstructured grid")
     types = vtk_to_numpy(grid.GetCellTypesArray()) if grid.GetNumberOfCells() else np.empty(0, int)
     starts = vtk_to_numpy(grid.GetCells().GetOffsetsArray())[:-1][types == vtk.VTK_TETRA]
@@ -53,12 +53,12 @@ def _read_vtu(path):
 
 
 def _read_by_meshio(path, file_format):
-    said = io.StringIO()  # meshio prints messages
+    messages = io.StringIO()  # meshio prints messages
     try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(messages), contextlib.redirect_stderr(messages):
             mesh = meshio.read(path, file_format)
     except (Exception, SystemExit) as error:  # pylint: disable=broad-except  # a broken file may raise any of them
-        why = " ".join([*said.getvalue().split(), str(error)])
+        why = " ".join([*messages.getvalue().split(), str(error)])
         raise MeshError(f"meshio cannot read it as {file_format}: {type(error).__name__}: {why}") from None
     blocks = [block.data for block in mesh.cells if block.type == TETRAHEDRON]
     return mesh.points, np.concatenate(blocks) if blocks else np.empty((0, 4), int)
@@ -71,7 +71,7 @@ def _check(points, cells):
         raise MeshError("it has no tetrahedra")
     if cells.min() < 0 or cells.max() >= len(points):
         bad = int(np.argmax(((cells < 0) | (cells >= len(points))).any(axis=1)))
-        raise MeshError(f"cell {bad} names a point that is not there; there are {len(points)}")
+        raise MeshError(f"cell {bad} names a point that the mesh of {len(points)} points lacks")
     corners = points[cells]
     if not np.isfinite(corners).all():
         bad = int(np.argmax(~np.isfinite(corners).all(axis=(1, 2))))

@@ -103,15 +103,15 @@ class Program(unittest.TestCase):
         path.write_text(text)
         return path
 
-    def test_it_tells_iterations_of_each_system(self):
+    def test_it_reports_iterations_of_each_system(self):
         points, cells = cube()
         found = run(self.write("cube.mesh", medit(np.vstack([points, [[99, 99, 99]]]), cells)))
         self.assertEqual(found.returncode, 0, found.stderr)
-        told = json.loads(found.stdout)
-        self.assertEqual((told["poisson"]["unknowns"], told["elasticity"]["unknowns"]), (5**3, 3 * 5**3))
+        report = json.loads(found.stdout)
+        self.assertEqual((report["poisson"]["unknowns"], report["elasticity"]["unknowns"]), (5**3, 3 * 5**3))
         for system in ("poisson", "elasticity"):
             for preconditioner in ("jacobi", "amg"):
-                one = told[system][preconditioner]
+                one = report[system][preconditioner]
                 self.assertGreater(one["iterations"], 0)
                 self.assertGreater(one["largest_eigenvalue"], one["smallest_eigenvalue"])
                 self.assertGreater(one["smallest_eigenvalue"], 0)
@@ -151,7 +151,7 @@ class Program(unittest.TestCase):
         self.assertEqual((found.returncode, found.stdout), (1, ""))
         self.assertIn("nothing is unknown", found.stderr)
 
-    def test_it_tells_its_version(self):
+    def test_it_reports_its_version(self):
         found = run("--version")
         self.assertEqual(found.returncode, 0)
         self.assertRegex(found.stdout, r"^DOLFINx \S+ .*PETSc \S+")

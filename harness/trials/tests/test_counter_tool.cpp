@@ -1,4 +1,4 @@
-// Tests of trials counted by valgrind and likwid-perfctr: real if installed, played by scripts, absent, or
+// Tests of trials counted by valgrind and likwid-perfctr: real if installed, simulated by scripts, absent, or
 // failing.
 #include <gtest/gtest.h>
 

@@ -38,7 +38,7 @@ class PreparationTest : public testing::Test {
   Preparation make(Preparer& preparer, const Trial& trial) {
     std::filesystem::create_directories(folder_ / "results/scratch");
     return preparer.make(trial, folder_ / "results/scratch",
-                         [&](const std::string& what) { told_ += what + "\n"; }, {});
+                         [&](const std::string& what) { announced_ += what + "\n"; }, {});
   }
   std::size_t lines_of(const std::string& name) {
     std::istringstream lines(read_tail(folder_ / name, 10000));
@@ -47,7 +47,7 @@ class PreparationTest : public testing::Test {
     return number;
   }
   TemporaryFolder folder_;
-  std::string told_;
+  std::string announced_;
 };
 
 TEST_F(PreparationTest, PhantomIsDrawnOnceByEachMesher) {
@@ -92,7 +92,7 @@ TEST_F(PreparationTest, RadiusIsFoundOnceOnAllProcessorsAndStoredWithItsEvidence
   EXPECT_EQ(found.delta_mm, 1.125);
   EXPECT_EQ(found.target_elements, 1000u);
   EXPECT_EQ(found.cells, 990u);
-  EXPECT_NE(told_.find("1000 cells"), std::string::npos) << told_;
+  EXPECT_NE(announced_.find("1000 cells"), std::string::npos) << announced_;
   const std::string asked = read_tail(folder_ / "arguments", 1000);
   EXPECT_NE(asked.find("--target-elements 1000 --threads " + std::to_string(usable_processors())),
             std::string::npos)
@@ -134,14 +134,14 @@ TEST_F(PreparationTest, RadiusIsAnotherOnesForAnotherImageNumberDeltaOrMesher) {
   EXPECT_TRUE(any.find(other).has_value()) << "the file's bytes count, not its name";
 }
 
-TEST_F(PreparationTest, NumberOfMeshesIsThatOfTheMesherWhereItTells) {
+TEST_F(PreparationTest, NumberOfMeshesIsThatOfTheMesherWhereItReportsIt) {
   const Trial trial = some_trial(folder_.write("image.nii", "voxels"), kTarget);
   Preparer silent = preparer();
   EXPECT_FALSE(make(silent, trial).resolved.value().meshes);
-  Preparer telling =
+  Preparer reporting =
       preparer("t", R"(echo '{"stop_reason":"complete","cells":990,"used":{"radius_mm":2,"delta_mm":1},
 "calibration":{"meshes":[{"radius_mm":4,"cells":120,"seconds":0.1}],"seconds":0.1}}' | tr -d '\n' > "$record")");
-  EXPECT_EQ(make(telling, trial).resolved.value().meshes, 2u) << "the coarse one and the last";
+  EXPECT_EQ(make(reporting, trial).resolved.value().meshes, 2u) << "the coarse one and the last";
 }
 
 TEST_F(PreparationTest, RadiusThatIsNotFoundIsAFaultAndTriedOnce) {

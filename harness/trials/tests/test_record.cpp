@@ -91,7 +91,7 @@ TEST_F(RowTest, OfAFailureSaysWhyAndOnWhat) {
   EXPECT_FALSE(row.contains("cells"));
 }
 
-TEST_F(RowTest, TellsRadiusReplayAndCopies) {
+TEST_F(RowTest, RecordsRadiusReplayAndCopies) {
   for (const char* key : {"resolved", "replay", "side_by_side"})
     EXPECT_TRUE(row_of(good).at(key).is_null()) << key;
   good.preparation.resolved.emplace().radius_mm = 2;
@@ -133,7 +133,7 @@ TEST_F(RowTest, TableHasMediansOfTheMemoryLevels) {
   EXPECT_NE(table.find("L1 cache 5 cycles, memory -\n"), std::string::npos) << table;
 }
 
-TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
+TEST_F(RowTest, TableIsAlignedAndListsEveryTrial) {
   good.mesh->cells = 1234567;
   const Row met = made_of(good);
   trial.name = "another-with-a-long-name";
@@ -214,7 +214,7 @@ TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
   EXPECT_THROW(describe_programs({folder / "absent", {}}), InputError);
 }
 
-TEST(Machine, IsTheSameEachTimeAndTellsNoHostName) {
+TEST(Machine, IsTheSameEachTimeAndHasNoHostName) {
   const Machine machine = this_machine();
   EXPECT_EQ(machine.summary, this_machine().summary);
   EXPECT_GE(machine.summary.usable_processors, 1);

@@ -150,7 +150,7 @@ class SolvingTest : public TrialTest {
   std::string reason_to_skip_;
 };
 
-TEST_F(SolvingTest, TellsWhatTheSolverPrintsOfTheMesh) {
+TEST_F(SolvingTest, RecordsWhatTheSolverPrintsOfTheMesh) {
   const TrialResult result = run_with_solver("[ -e \"$1\" ] && echo '" + kSolved + "'");
   EXPECT_EQ(result.status, Status::kOk) << result.reason;
   EXPECT_EQ(to_json(result.solve), Json::parse(kSolved));
@@ -361,7 +361,7 @@ TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
   trial.image = folder_ / "absent.nii";
   EXPECT_EQ(runner.why_skipped(trial), "") << "then its mesher says what is missing";
   trial.if_exists = true;
-  EXPECT_EQ(runner.why_skipped(trial), trial.image + " is not there");
+  EXPECT_EQ(runner.why_skipped(trial), trial.image + " does not exist");
   trial.image = folder_.write("present.nii", "");
   EXPECT_EQ(runner.why_skipped(trial), "");
   trial.image = "phantom:abdomen";

@@ -14,7 +14,7 @@ ClaimResult angles_of(const Mesh& mesh, double bound) {
   return check_boundary_angles(mesh, find_adjacency(mesh, 2), options);
 }
 
-TEST(BoundaryAngles, TellsEqualityApart) {
+TEST(BoundaryAngles, DistinguishesEquality) {
   const Mesh cubes = kuhn_cubes(1);  // all boundary facets have angles of 45, 45 and 90 degrees
   const ClaimResult equal = angles_of(cubes, 45);
   EXPECT_EQ(equal.verdict, Verdict::kFail);

@@ -28,7 +28,7 @@ TEST(Dihedral, IsNotRunWithoutABoundOrAPromise) {
   EXPECT_FALSE(result.reason.empty());
 }
 
-TEST(Dihedral, GoesByWhatTheFilePromisesUnlessToldOtherwise) {
+TEST(Dihedral, UsesThePromiseOfTheFileUnlessOptionsGiveBounds) {
   Mesh mesh = wedge(7);
   mesh.promised_dihedral_deg = {8, 165};
   EXPECT_EQ(dihedral_of(mesh, std::nullopt, std::nullopt).verdict, Verdict::kFail);
@@ -78,7 +78,7 @@ TEST(Dihedral, RejectsFlatCellsByEitherBound) {
   }
 }
 
-TEST(Dihedral, HistogramHasABinADegree) {
+TEST(Dihedral, HistogramHasABinPerDegree) {
   for (const double degrees : {7.01, 7.99, 8.01, 164.99, 165.01, 179.9}) {
     const Histogram histogram = dihedral_of(wedge(degrees), 1, std::nullopt).histograms.at(0);
     ASSERT_EQ(histogram.counts.size(), 180u);

@@ -190,11 +190,11 @@ TEST(Labels, ASmoothedTieIsDecidedExactly) {
   EXPECT_EQ(result.verdict, Verdict::kPass);
 }
 
-TEST(Labels, TheExactLabelChangesWhereStrengthsSay) {
+TEST(Labels, TheExactLabelChangesWhereVoxelWeightsTie) {
   Image image = make_image({4, 4, 4}, kUnitAffine, [](int i, int, int) { return i < 2 ? 3U : 7U; });
   image.smoothing = Smoothing{1, std::vector<std::uint16_t>(image.voxels.size())};
   for (std::size_t v = 0; v < image.voxels.size(); ++v)
-    image.smoothing->strengths[v] = image.voxels[v] == 3 ? 20000 : 50001;
+    image.smoothing->voxel_weights[v] = image.voxels[v] == 3 ? 20000 : 50001;
   // The label changes 20000/70001 of the way from 1 to 2. The cell is around a point that is 2^-40 off.
   const double unit = 0x1p-40, change = std::floor((1 + 20000.0 / 70001) / unit) * unit;
   for (const double center : {change, change + unit}) {

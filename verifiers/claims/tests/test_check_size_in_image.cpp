@@ -298,7 +298,7 @@ TEST(SizeInImage, ACellIsOverItsGradeJustBeyondTheSlack) {
   }
 }
 
-TEST(SizeInImage, NodesAreEverySoManyVoxels) {
+TEST(SizeInImage, NodesAreEveryNthVoxel) {
   EXPECT_EQ(stride_of_nodes({1, 1, 1}), 1);
   EXPECT_EQ(stride_of_nodes({512, 512, 256}), 1) << "2^26";
   EXPECT_EQ(stride_of_nodes({512, 512, 257}), 2);
@@ -357,7 +357,7 @@ TEST(SizeInImage, RefusesLabelsThatHaveNoInterface) {
   for (const char* text : {"1=2", "1,2", ",1=2", "1,=2", "1,2=x", "1,2=1:", "liver,0=1", "1,-2=1", "1+,2=1"})
     EXPECT_NE(fault_of(text).find("--size-near"), std::string::npos) << text;
   for (const char* text : {"1,2=0", "1,2=-1", "1,2=inf", "1,2=nan", "1,2=1:0", "1,2=1:inf"})
-    EXPECT_NE(fault_of(text).find("no positive, finite length"), std::string::npos) << text;
+    EXPECT_NE(fault_of(text).find("not a positive, finite length"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ TEST(Structure, AcceptsSoundMeshes) {
 }
 
 TEST(Structure, RejectsAnEmptyMesh) {
-  EXPECT_TRUE(names(check_structure({}, {}, two_threads()), "there are cells"));
-  EXPECT_TRUE(names(check_structure(mesh_of({{0, 0, 0}}, {}), {}, two_threads()), "there are cells"));
+  EXPECT_TRUE(names(check_structure({}, {}, two_threads()), "the mesh has cells"));
+  EXPECT_TRUE(names(check_structure(mesh_of({{0, 0, 0}}, {}), {}, two_threads()), "the mesh has cells"));
 }
 
 TEST(Structure, RejectsIdsOutOfRange) {
@@ -45,7 +45,7 @@ TEST(Structure, RejectsCoordinatesThatAreNotFinite) {
   }
 }
 
-TEST(Structure, TellsInvertedFromFlatFromLeftHanded) {
+TEST(Structure, DistinguishesInvertedFlatAndLeftHanded) {
   Mesh inverted = kuhn_cubes(2);
   std::swap(inverted.cells[7][1], inverted.cells[7][2]);
   ClaimResult result = structure_of(inverted);

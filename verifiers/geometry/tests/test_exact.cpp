@@ -58,7 +58,7 @@ TEST(Exact, FilterDecidesClearCases) {
   EXPECT_LE(num_exact, 1);
 }
 
-TEST(Exact, SignOfTellsZeroFromTiny) {
+TEST(Exact, SignOfDistinguishesZeroFromTiny) {
   std::uint64_t num_exact = 0;
   const auto third = [](double x) { return [x]<class T>(T) { return T(x) * T(3) - T(1); }; };
   EXPECT_EQ(sign_of(third(1. / 3), num_exact), -1);  // 1/3 is rounded down
@@ -71,12 +71,12 @@ TEST(Exact, SignOfTellsZeroFromTiny) {
   EXPECT_EQ(sign_of(cancelling(0), num_exact), 0);
 }
 
-TEST(Exact, TypedDecimalIsTheShortestThatReadsBack) {
-  EXPECT_EQ(typed_decimal(1.93), Rational(193, 100));
-  EXPECT_EQ(typed_decimal(30), Rational(30));
-  EXPECT_EQ(typed_decimal(1e-7), Rational(1, 10000000));
-  EXPECT_EQ(typed_decimal(-2.5e20), Rational(-25) * typed_decimal(1e19));
-  EXPECT_EQ(typed_decimal(0), Rational(0));
+TEST(Exact, DecimalAsTypedIsTheShortestThatReadsBack) {
+  EXPECT_EQ(decimal_as_typed(1.93), Rational(193, 100));
+  EXPECT_EQ(decimal_as_typed(30), Rational(30));
+  EXPECT_EQ(decimal_as_typed(1e-7), Rational(1, 10000000));
+  EXPECT_EQ(decimal_as_typed(-2.5e20), Rational(-25) * decimal_as_typed(1e19));
+  EXPECT_EQ(decimal_as_typed(0), Rational(0));
 }
 
 TEST(Exact, SquaredSineIsExactOrJustAbove) {

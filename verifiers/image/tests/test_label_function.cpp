@@ -23,20 +23,20 @@ Image random_image(unsigned seed, unsigned labels) {
   return image;
 }
 
-Image with_random_strengths(Image image) {
+Image with_random_voxel_weights(Image image) {
   std::mt19937 random(7);
   image.smoothing.emplace();
   for (std::size_t i = 0; i < image.voxels.size(); ++i)
-    image.smoothing->strengths.push_back(static_cast<std::uint16_t>(1 + random() % kFullStrength));
+    image.smoothing->voxel_weights.push_back(static_cast<std::uint16_t>(1 + random() % kFullVoxelWeight));
   return image;
 }
 
-// Returns the strength of the nearest voxel of the grid.
-double strength(const Image& image, std::array<int, 3> v) {
+// Returns the weight of the nearest voxel of the grid.
+double voxel_weight(const Image& image, std::array<int, 3> v) {
   if (!image.smoothing) return 1;
   for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = std::clamp(v[axis], 0, image.size[axis] - 1);
   return image.smoothing
-             ->strengths[static_cast<std::size_t>((v[2] * image.size[1] + v[1]) * image.size[0] + v[0])] /
+             ->voxel_weights[static_cast<std::size_t>((v[2] * image.size[1] + v[1]) * image.size[0] + v[0])] /
          65535.0;
 }
 
@@ -57,7 +57,7 @@ void expect_hat_functions(const Image& image) {
         for (int i = -3; i < 8; ++i) {
           const double weight = std::max(0.0, 1 - std::abs(u[0] - i)) *
                                 std::max(0.0, 1 - std::abs(u[1] - j)) * std::max(0.0, 1 - std::abs(u[2] - k));
-          if (weight > 0) weights[voxel(image, i, j, k)] += weight * strength(image, {i, j, k});
+          if (weight > 0) weights[voxel(image, i, j, k)] += weight * voxel_weight(image, {i, j, k});
         }
     const LabelWeights found = function.weights_at(u);
     if (weights.size() == 1) weights.begin()->second = 1;  // one label alone has weight 1
@@ -70,12 +70,12 @@ void expect_hat_functions(const Image& image) {
 
 TEST(LabelFunction, IsTheGreatestSumOfHatFunctions) { expect_hat_functions(random_image(1, 4)); }
 
-TEST(LabelFunction, IsTheGreatestSumOfHatFunctionsInStrengths) {
-  expect_hat_functions(with_random_strengths(random_image(1, 4)));
+TEST(LabelFunction, IsTheGreatestSumOfHatFunctionsTimesVoxelWeights) {
+  expect_hat_functions(with_random_voxel_weights(random_image(1, 4)));
 }
 
 TEST(LabelFunction, ChangesOnceBetweenTwoVoxels) {
-  const Image image = with_random_strengths(random_image(1, 4));
+  const Image image = with_random_voxel_weights(random_image(1, 4));
   const LabelFunction function(image), of_voxels = LabelFunction::of_voxels(image);
   for (int k = -1; k < image.size[2]; ++k)
     for (int j = 0; j < image.size[1]; ++j)
@@ -126,8 +126,8 @@ void expect_exact_labels(const Image& image) {
 
 TEST(LabelFunction, ExactLabelsAreThoseOfExactWeights) {
   expect_exact_labels(random_image(1, 4));
-  Image image = with_random_strengths(random_image(1, 4));
-  for (auto& strength : image.smoothing->strengths) strength = kFullStrength;
+  Image image = with_random_voxel_weights(random_image(1, 4));
+  for (auto& weight : image.smoothing->voxel_weights) weight = kFullVoxelWeight;
   expect_exact_labels(image);
 }
 
@@ -142,10 +142,10 @@ TEST(LabelFunction, DecidesWhatRoundingLeavesOpen) {
   EXPECT_EQ(num_exact, 3U);
   EXPECT_EQ(function.decided_label_at({1.499, 1.3, 1.7}, num_exact), 9U);
   EXPECT_EQ(num_exact, 3U);
-  // Strengths of 1 to 2 tie a third of the way, which is no double.
+  // Voxel weights of 1 to 2 tie a third of the way, which is no double.
   image.smoothing.emplace();
   for (std::size_t i = 0; i < image.voxels.size(); ++i)
-    image.smoothing->strengths.push_back(i % 4 < 2 ? 1000 : 2000);
+    image.smoothing->voxel_weights.push_back(i % 4 < 2 ? 1000 : 2000);
   const LabelFunction smoothed(image);
   const mpq_class third(4, 3), little(1, 1000000000);
   EXPECT_EQ(smoothed.exact_label_at({third, 1, 1}), 5U);
@@ -179,7 +179,7 @@ void expect_gradients(const Image& image) {
 
 TEST(LabelFunction, GradientIsThatOfTheWeights) {
   expect_gradients(random_image(2, 3));
-  expect_gradients(with_random_strengths(random_image(2, 3)));
+  expect_gradients(with_random_voxel_weights(random_image(2, 3)));
 }
 
 TEST(ImageFrame, GoesThereAndBackInEverySpace) {

@@ -1,4 +1,4 @@
-// Compares strengths with their definition, word for word, and checks properties of smoothed images.
+// Compares voxel weights with their definition, word for word, and checks properties of smoothed images.
 #include "image/smoothing.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ class ByDefinition {
   explicit ByDefinition(const Image& image)
       : image_(image), h_(std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2])) {}
 
-  std::map<Voxel, long> strengths(double width) const {
+  std::map<Voxel, long> voxel_weights(double width) const {
     const std::map<Voxel, double> depths = all_depths(width);
     std::map<Voxel, long> n;
     const double unit = std::max(1.1 * width, h_ / 2) / 65535;
@@ -77,10 +77,10 @@ class ByDefinition {
  private:
   std::map<Voxel, long> without_growth(const std::map<Voxel, long>& n, double width, long least) const {
     std::map<Voxel, long> result;
-    for (const auto& [v, strength] : n) {
+    for (const auto& [v, weight] : n) {
       const auto [area, lead] = faces_near(v, width, n);
       const double growth = area == 0 ? 0 : static_cast<double>(lead) / static_cast<double>(2 * area);
-      result[v] = std::clamp(std::lround(static_cast<double>(strength) - growth), least, 65535L);
+      result[v] = std::clamp(std::lround(static_cast<double>(weight) - growth), least, 65535L);
     }
     return result;
   }
@@ -190,12 +190,12 @@ class ByDefinition {
 void expect_by_definition(const Image& image, double width_mm) {
   const Smoothing smoothing = smooth(image, width_mm, 2);
   EXPECT_EQ(smoothing.width_mm, width_mm);
-  const auto expected = ByDefinition(image).strengths(width_mm);
+  const auto expected = ByDefinition(image).voxel_weights(width_mm);
   std::set<long> different;
-  for (const auto& [v, strength] : expected) {
-    different.insert(strength);
+  for (const auto& [v, weight] : expected) {
+    different.insert(weight);
     // Sums in another order may round to the next 65535th.
-    EXPECT_NEAR(smoothing.strengths[place(image, v)], strength, 1) << v[0] << ' ' << v[1] << ' ' << v[2];
+    EXPECT_NEAR(smoothing.voxel_weights[place(image, v)], weight, 1) << v[0] << ' ' << v[1] << ' ' << v[2];
   }
   EXPECT_GT(different.size(), 20U);
 }
@@ -226,8 +226,8 @@ TEST(Smoothing, IsByDefinitionInImagesOfManyParts) {
 
 TEST(Smoothing, ThreadsDoNotMatter) {
   const Image image = random_image(4, {70, 40, 37}, kCubes, 4);
-  const auto one = smooth(image, 1.5, 1).strengths;
-  for (const int threads : {2, 5}) EXPECT_EQ(smooth(image, 1.5, threads).strengths, one);
+  const auto one = smooth(image, 1.5, 1).voxel_weights;
+  for (const int threads : {2, 5}) EXPECT_EQ(smooth(image, 1.5, threads).voxel_weights, one);
 }
 
 Image smoothed(Image image, double width_mm) {
@@ -337,7 +337,7 @@ TEST(Smoothing, BadWidthsAreRefused) {
       EXPECT_NE(message.find("less than 3.2 mm"), std::string::npos) << message;
     }
   }
-  EXPECT_EQ(smooth(image, 3.1, 1).strengths.size(), image.voxels.size());
+  EXPECT_EQ(smooth(image, 3.1, 1).voxel_weights.size(), image.voxels.size());
   const Image long_image =
       image_of({30, 30, 30}, {1, 0.5, 0.8}, [](int i, int, int) { return i < 4 ? 1U : 0U; });
   EXPECT_THROW(smooth(long_image, 4.01, 1), InputError);

@@ -191,7 +191,7 @@ std::string inserted(std::string text, const std::string& before, const std::str
 }
 
 // Every format that has a place for podm's promises is read. The tests of the program cover netCDF.
-TEST_F(ReadMesh, TheWidthOfSmoothingThatItsMakerTells) {
+TEST_F(ReadMesh, TheWidthOfSmoothingThatTheFileStates) {
   const auto files_that_say = [&](const std::string& words) {
     const std::string comment = "# promise " + words + "\n",
                       gmsh = "$Comments\npromise " + words + "\n$EndComments\n";

@@ -149,7 +149,7 @@ TEST_P(ReadOurMesh, AFacetsFileOfAnotherMeshIsRefused) {
 }
 
 // An information record of an Exodus file has 80 bytes; "space RAS" leaves most of them empty.
-TEST(ReadOurExodus, TellsTheWidthOfSmoothing) {
+TEST(ReadOurExodus, StatesTheWidthOfSmoothing) {
   const TestFolder folder;
   const std::string path = folder / "a.exo";
   ASSERT_EQ(

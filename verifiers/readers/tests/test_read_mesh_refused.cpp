@@ -150,7 +150,7 @@ TEST_F(RefuseMesh, VtuBinaryData) {
   refuse_edited("a.vtu", raw, "offset=\"0\"", "offset=\"18446744073709551615\"", {"line 6", "outside"});
   refuse_edited("a.vtu", raw, "\n_", "\n#", {"line", "'_'"});
   refuse_edited("a.vtu", raw, "\n_\x90", "\n_\x88", {"line 6", "17 values, 18 are expected"});
-  refuse_edited("a.vtu", raw, "\n_\x90", "\n_\x8f", {"line 6", "143 bytes are no whole number of values"});
+  refuse_edited("a.vtu", raw, "\n_\x90", "\n_\x8f", {"line 6", "143 bytes are not a whole number of values"});
   refuse_edited("a.vtu", raw, "\n_" + std::string("\x90\0\0\0", 4), "\n_\xff\xff\xff\xff",
                 {"line 6", "4294967295 bytes are announced at byte"});
   options.encoding = VtuOptions::kInline;
@@ -201,10 +201,10 @@ TEST_F(RefuseMesh, LegacyVtk) {
   edited("POINTS 6", "POINTS -6", {"line 5", "negative"});
   edited("POINTS 6", "POINTS 99999999999", {"line 5", "more than"});
   edited("POINTS 6", "POINTS 99999999999999999999", {"line 5", "out of range"});
-  edited("POINTS 6", "POINTS 5", {"is no keyword"});
-  edited("POINTS 6 double", "POINTS 6 quad", {"line 5", "'QUAD' is no type"});
+  edited("POINTS 6", "POINTS 5", {"is not a keyword"});
+  edited("POINTS 6 double", "POINTS 6 quad", {"line 5", "'QUAD' is not a type"});
   edited("CELLS 5", "CELLS 4", {"line 11", "CELL_DATA of 5 cells, the grid has 4"});
-  edited("CELL_TYPES 5", "CELL_TYPES 4", {"is no keyword"});
+  edited("CELL_TYPES 5", "CELL_TYPES 4", {"is not a keyword"});
   edited("CELL_DATA 5", "CELL_DATA 6", {"6 cells, the grid has 5"});
   edited("\n3 0 1 2 ", "\n-3 0 1 2 ", {"cell 0", "run past"});
   const std::string binary = legacy_vtk_text(mesh_, true, true);
@@ -273,7 +273,7 @@ TEST_F(RefuseMesh, Tetgen) {
   write_bytes(folder_ / "a.ele", elements);
   refuse_edited("a.node", nodes, "6 3 1", "6 2 1", {"line 2", "dimension"});
   refuse_edited("a.node", nodes, "6 3 1", "66666666 3 1", {"line 2", "more than"});
-  refuse_edited("a.node", nodes, "  3 ", "  4 ", {"line 5", "number 4 where 3 should be"});
+  refuse_edited("a.node", nodes, "  3 ", "  4 ", {"line 5", "number 4 where 3 is expected"});
   refuse_edited("a.node", nodes, "16777216", "abc", {"line 6", "'abc' is not a number"});
   refuse("a.node", nodes.substr(0, 60), {"line", "the file ends"});
   write_bytes(folder_ / "a.node", nodes);

@@ -1,4 +1,4 @@
-// Rows in the form that podm-bench writes, with numbers made up by a test.
+// Rows in the form that podm-bench writes, with synthetic numbers of a test.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace podm::bench {
 
 /// A row of status ok on a machine of two sockets of eight cores. `asked` decides whether it is simulated.
-inline Row made_up_row(const std::string& trial, const Json& asked, int repeat = 1) {
+inline Row synthetic_row(const std::string& trial, const Json& asked, int repeat = 1) {
   static int num_rows = 0;
   Row row;
   row.key = "key " + std::to_string(++num_rows);
@@ -53,9 +53,9 @@ inline void set_overhead(Row& row, double contention, double rollback, double be
   overhead.begging = begging;
 }
 
-/// A made-up row of a mesh whose refinement took `seconds`.
+/// A synthetic row of a mesh whose refinement took `seconds`.
 inline Row refined_in(double seconds, const Json& asked, int repeat = 1, const std::string& trial = "1M") {
-  Row row = made_up_row(trial, asked, repeat);
+  Row row = synthetic_row(trial, asked, repeat);
   mesh_of(row).cells = 1000;
   mesh_of(row).phases_s = {{"read", 0.5}, {"refine", seconds}};
   return row;
