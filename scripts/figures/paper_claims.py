@@ -16,7 +16,7 @@ NAME = "paper_claims"  # of the table
 SIDES = ("measured", "simulated")
 AGREES, CONTRADICTED, NOT_RESOLVED, NOT_JUDGED = "agrees", "contradicted", "not resolved", "not judged"
 IN_PART = " in part"
-TITLES = ["the paper says", "measured here (cells a core)", "simulated (cells a core)", "verdict", "more"]
+TITLES = ["the paper says", "measured here (cells per core)", "simulated (cells per core)", "verdict", "more"]
 PLACEHOLDER = re.compile(r"\{([^}]*)\}")
 WIDTH = 120  # of a line of text
 

@@ -196,7 +196,7 @@ def initial_cores(ours):
     cores = int(rows["cores"].max())
     values, counts = (", ".join(map(form.format, numbers)) for form, numbers in (("{:.2f}", rates),
                                                                                ("{:.0f}", rates.index)))
-    return f"{values} M a second{in_brackets(rows['cells'].median() / cores)} with {counts} of {cores} cores for it"
+    return f"{values} M per second{in_brackets(rows['cells'].median() / cores)} with {counts} of {cores} cores for it"
 
 
 def _proved(rows, claim):
@@ -258,7 +258,7 @@ def one_core(ours, algorithm):
         return None
     rows = rows[rows["cells"] >= 0.9 * rows["cells"].max()]
     rate = (rows["cells"] / rows["seconds"]).median() / 1e6
-    return f"{rate:.2f} M a second{in_brackets(rows['cells'].median())}"
+    return f"{rate:.2f} M per second{in_brackets(rows['cells'].median())}"
 
 
 def size(ours, experiment, cores=None):
