@@ -135,6 +135,7 @@ class Pages(unittest.TestCase):
                       "## Interrupted", "## Progress", "Meshes a label image into tetrahedra."):
             self.assertIn(words, text)
         self.assertNotIn("_made", text)
+        self.assertIn("```python\ntry:\n    mesh = podm.mesh(labels, radius=0.5)\n", text)
 
     def test_a_schema_becomes_a_table_with_a_line_for_each_key(self):
         schema = {"title": "T", "required": ["a"], "$defs": {"n": {"type": "integer", "minimum": 1}}, "properties": {

@@ -18,6 +18,7 @@ from .mirror import mirror
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = ("podm", "podm-mpi", "podm-verify", "podm-bench")
+STYLE = "docs/site.css"
 SCHEMAS = ("podm-bench-row", "podm-verify")
 
 
@@ -55,6 +56,7 @@ def main(arguments=None):
     shutil.rmtree(pages, ignore_errors=True)
     try:
         mirror(ROOT, pages_of(ROOT), pages)
+        shutil.copyfile(ROOT / STYLE, pages / STYLE)
         for name, text in generated_pages(options.programs).items():
             (pages / name).write_text(text, encoding="utf-8")
         doxygen(pages)

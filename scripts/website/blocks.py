@@ -18,7 +18,7 @@ from dataclasses import dataclass
 COMMANDS, SHOWN, FILES = ("sh", "python"), ("text", "text stderr"), ("toml", "cmake", "cpp", "json", "bibtex")
 FENCE = re.compile(r"^ {0,3}```(.*)$")
 NO_RUN = re.compile(r"^<!-- no-run: (\S.*) -->$")
-TIMEOUT_S = 120
+TIMEOUT_S = 300
 
 
 class PageError(Exception):

@@ -74,11 +74,11 @@ def _prose(text):
     lines, blocks = [], re.split(r"\n{2,}", text.strip())
     is_code = False
     for block in blocks:
-        if is_code and block.startswith("    "):
+        if is_code:
             lines += ["```python", *inspect.cleandoc(block).split("\n"), "```", ""]
         else:
             lines += [*_terms(block.removesuffix(":") if block.endswith("::") else block), ""]
-        is_code = block.endswith("::") or is_code and block.startswith("    ")
+        is_code = block.endswith("::")
     return lines
 
 
