@@ -2,8 +2,8 @@
 from .html import Bar
 
 REGULAR_DEG = 70.53  # the dihedral angles of a regular tetrahedron
-NO_BOUND = ("Dihedral angles have no bound without <code>--optimize</code> or <code>--min-dihedral</code>: the extremes "
-            "are of few cells, as the histograms show.")
+NO_BOUND = ("Dihedral angles have no bound without <code>--optimize</code> or <code>--min-dihedral</code>: the "
+            "extremes are of few cells, as the histograms show.")
 UNMOVED = {"spacing": "other vertices too near", "shape": "no better place found", "surface": "held by the surface",
            "not_reached": "not reached before the run ended"}
 OBSTACLES = {"frozen_facets": "two facets of one surface", "junction": "three labels meet",

@@ -12,7 +12,8 @@ from report_page import dihedral_bounds
 from report_page.mesh_page import page
 
 QUALITY = {"max_radius_edge": 1.929174, "min_facet_angle_deg": 30.016466, "max_facet_angle_deg": 118.2,
-           "min_dihedral_deg": 8.00104, "max_dihedral_deg": 164.998617, "max_radius_mm": 11.7018, "shortest_edge_mm": 5.7}
+           "min_dihedral_deg": 8.00104, "max_dihedral_deg": 164.998617, "max_radius_mm": 11.7018,
+           "shortest_edge_mm": 5.7}
 RECORD = {
     "cells": 162, "vertices": 64, "boundary_facets": 108, "program": "podm 0.1.0", "algorithm": "podm",
     "input": {"path": "a.nii.gz", "sha256": "0" * 64}, "threads": {"used": 1}, "cells_per_second": 1e5,
