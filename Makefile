@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build install python peers test stress kill-matrix audit kick-tires experiments figures clean
+.PHONY: help setup build install python peers test stress kill-matrix audit docs kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    run every experiment at its smallest size, in a few minutes; tables and results/runs/"
@@ -23,6 +23,7 @@ help:
 	@echo "                   replayed; SEED=N repeats one of them"
 	@echo "make kill-matrix   list every mutant of a mesh and the claim of podm-verify that rejects it"
 	@echo "make audit         recompute every figure and table of the documentation from the rows in results/reference/"
+	@echo "make docs          the documentation as a site that needs no network: build/docs/site/index.html"
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a cut through a mesh: $(FIGURES)/,"
 	@echo "                   and one page with all of them: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
@@ -85,6 +86,10 @@ kill-matrix: build
 audit:
 	@scripts/setup run
 	scripts/audit
+
+docs: build
+	@scripts/setup run docs
+	scripts/make_docs
 
 kick-tires:
 	$(MAKE) experiments TIER=kick-tires

@@ -11,6 +11,7 @@ from figures.write import svg_of
 from views.mesh import MeshError
 from views.read_mesh import read_mesh
 
+from . import dihedral_bounds
 from .histograms import histograms, quality_of
 from .html import Bar, bars, box, document, findings, fold, responsive, section, table_html
 from .sections import sections_html
@@ -86,16 +87,15 @@ def _good(record):
                  f"{quality['max_radius_edge']:.4g} of {BOUND_RATIO}", "own"),
              Bar("smallest angle of a facet on a surface", quality["min_facet_angle_deg"] / 60,
                  f"{quality['min_facet_angle_deg']:.4g}°, bound {BOUND_ANGLE_DEG}°", "own"),
-             Bar("smallest dihedral angle", quality["min_dihedral_deg"] / 70.53,
-                 f"{quality['min_dihedral_deg']:.3g}°, largest {quality['max_dihedral_deg']:.4g}°", "own")]
+             *dihedral_bounds.bars_of(record)]
     if used["radius_mm"] > 0:
         lines.append(Bar("largest circumradius", quality["max_radius_mm"] / used["radius_mm"],
                          f"{quality['max_radius_mm']:.4g} of {used['radius_mm']:.4g} mm", "own"))
-    note = ("Dihedral angles have no bound without --optimize or --min-dihedral: the extremes are of few cells, as the "
-            "histograms show.")
+    verdicts = dihedral_bounds.judged(record)
+    note = "" if verdicts else f'<p class="faint">{dihedral_bounds.NO_BOUND}</p>'
     return (_answer(f"Radius-edge ratio up to {quality['max_radius_edge']:.4g}, dihedral angles from "
                   f"{quality['min_dihedral_deg']:.3g} to {quality['max_dihedral_deg']:.4g} degrees.")
-            + bars("the worst cells", lines, full=1) + f'<p class="faint">{note}</p>')
+            + findings(verdicts) + bars("the worst cells", lines, full=1) + note)
 
 
 def _quality(mesh, quality):

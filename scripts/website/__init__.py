@@ -1,0 +1,1 @@
+"""The documentation: its command blocks, its links, and the site that `make docs` builds."""
