@@ -108,8 +108,8 @@ void for_each_option(Struct&& of, const Visit& visit) {
   std::apply([&](const auto&... each) { (visit_each(each), ...); }, std::remove_cvref_t<Struct>::options());
 }
 
-/// Messages spell options in two ways: "--leaf-size" for the programs, "leaf_size" for the Python package, which sets
-/// this.
+/// Messages spell options in two ways: "--leaf-size" for the programs, "leaf_size" for the Python package,
+/// which sets this.
 inline std::atomic<bool> messages_are_for_python = false;
 
 /// The option of this name as the user wrote it or may write it.
