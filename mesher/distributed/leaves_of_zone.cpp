@@ -2,9 +2,9 @@
 
 #include <array>
 
+#include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/leaf_loop.h"
 #include "algorithms/podm_loop.h"
 #include "delaunay/operation_steps.h"
 #include "distributed/together.h"
