@@ -2,7 +2,6 @@
 
 #include "algorithms/memory_model.h"
 #include "refine/virtual_box.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -22,8 +21,8 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
                                  .counters = {}});
       accesses_.push_back({.node = place.node, .addresses = {}});
     }
+    return starting_threads(num_workers());
   });
-  charge_virtual(kAllocate, &TimeCosts::thread_started, static_cast<std::uint64_t>(num_workers() - 1));
 }
 
 Construction::Entries Construction::all_cells() const {

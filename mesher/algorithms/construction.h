@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "algorithms/page_sampler.h"
@@ -20,10 +21,10 @@
 #include "refine/rules.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
+#include "workers/accounting.h"
 #include "workers/coordination.h"
 #include "workers/real_time.h"
 #include "workers/virtual_time.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -62,10 +63,9 @@ struct Team {
 inline TimeCosts costs_of(const Team& team) {
   return team.model != nullptr ? team.model->costs : TimeCosts();
 }
-/// Virtual seconds of `count` pieces of work of equal cost that `num_working` workers share.
-inline double virtual_seconds(const Team& team, double TimeCosts::*cost, std::uint64_t count,
-                              int num_working = 1) {
-  const double reference_s = costs_of(team).*cost * static_cast<double>(count);
+/// Returns the virtual seconds of work that `num_working` workers share.
+inline double virtual_seconds(const Team& team, const PhaseWork& work, int num_working = 1) {
+  const double reference_s = work.seconds(costs_of(team));
   const auto at_work = static_cast<std::size_t>(num_working);
   const double speed = team.model != nullptr ? team.model->speed_of_one_of(at_work) : 1;
   return reference_s / speed / num_working;
@@ -124,12 +124,17 @@ class Construction {
     return workers;
   }
 
-  /// Charges the phase with the seconds of the action, except those charged to other phases meanwhile.
+  /// Charges the phase with the seconds of the action, except those charged to other phases meanwhile. An
+  /// action that does work of no virtual worker returns it as PhaseWork, which is charged in virtual time.
   template <class Action>
   void timed(const std::string& phase, Action&& action) {
     const auto start = std::chrono::steady_clock::now();
     const double charged_before_s = charged_s_;
-    action();
+    if constexpr (std::is_same_v<std::invoke_result_t<Action>, PhaseWork>) {
+      charge_virtual(phase, action());
+    } else {
+      action();
+    }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     charge(phase, elapsed.count() - (charged_s_ - charged_before_s));
   }
@@ -150,11 +155,6 @@ class Construction {
       for (WorkerId id = 0; id < count; ++id) result_.workers[id].bound_to = time.processor(id).bound_to;
     }
   }
-  /// Charges the virtual phase with work that no virtual worker did.
-  void charge_virtual(const std::string& phase, double TimeCosts::*cost, std::uint64_t count) {
-    if (team_.executor != Executor::kVirtual) return;
-    result_.virtual_phases_s[phase] += virtual_seconds(team_, cost, count);
-  }
   /// Moves the mesh between operations: cells and vertices at a point go to the NUMA node of
   /// worker_of(point), and stay if that is kNoWorker. All workers of the team move them, in their time.
   /// Returns nothing if the run is over and nothing has moved. If the run ends later, everything has moved.
@@ -166,17 +166,14 @@ class Construction {
       const WorkerId worker = worker_of(p);
       return worker == kNoWorker ? Relocation::kStay : nodes[worker];
     };
-    time.run([&](WorkerId self) {
-      relocation->look(self, node_of);
-      time.spend(self, time.costs().entry_to_leaf * static_cast<double>(mesh().cell_bound()) / num_workers());
-    });
-    time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
+    const AccountedRelocation accounted(*relocation, time);
+    time.run([&](WorkerId self) { accounted.look(self, node_of); });
+    time.run([&](WorkerId self) { accounted.rename(self, *pools_[self]); });
     if (time.is_over()) return std::nullopt;
     std::vector<char> has_moved(nodes.size(), 0);
     time.run([&](WorkerId self) {
-      const std::size_t num_cells = relocation->move(self, *pools_[self]);
-      has_moved[self] = 1;
-      time.spend(self, time.costs().cell_moved * static_cast<double>(num_cells));
+      has_moved[self] = 1;  // a move that has begun ends
+      accounted.move(self, *pools_[self]);
     });
     for (WorkerId self = 0; self < has_moved.size(); ++self)  // only starting workers allocates
       if (has_moved[self] == 0) relocation->move(self, *pools_[self]);
@@ -211,6 +208,9 @@ class Construction {
     if (worker.accesses()) accesses_[id].addresses = worker.accesses()->samples();
   }
   void log(const Relocation& relocation);
+  void charge_virtual(const std::string& phase, const PhaseWork& work) {
+    if (team_.executor == Executor::kVirtual) result_.virtual_phases_s[phase] += virtual_seconds(team_, work);
+  }
   void charge(const std::string& phase, double seconds) {
     result_.phases_s[phase] += seconds;
     charged_s_ += seconds;

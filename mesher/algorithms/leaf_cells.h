@@ -34,6 +34,7 @@ class LeafCells {
   /// omitted.
   LeafCells(const Mesh& mesh, const Octree& octree, const Entries* only = nullptr);
 
+  LeafId num_leaves() const { return static_cast<LeafId>(list_of_leaf_.size()); }
   std::size_t num_slices() const { return outside_.size(); }
   /// Lists the living cells of a slice with their leaves, and returns their number. Each slice is distributed
   /// once, in any order, and no cell changes meanwhile.

@@ -20,7 +20,7 @@
 
 #include "algorithms/computing_node.h"
 #include "algorithms/podm.h"
-#include "workers/work_cost.h"
+#include "workers/accounting.h"
 
 namespace podm {
 
@@ -28,8 +28,8 @@ namespace podm {
 template <class Locks, class Time>
 struct Leaves {
   const Octree& octree;
-  LeafCells& cells;
-  RefinementQueue& queue;
+  AccountedLeafCells<LeafCells, Time> cells;
+  AccountedQueue<RefinementQueue, Time> queue;
   Time& time;
   std::stop_token over;
   bool with_schedule;
@@ -44,18 +44,13 @@ struct Leaves {
   void refine_one_by_one(ComputingNode<Locks>& node) {
     Worker<Locks>& master = node.master();
     const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
-    const auto pop = [&] {
-      time.spend_in(&queue, master.id(), time.costs().leaf_handed_out);
-      return queue.wait_and_pop(node.number(), wait, over);
-    };
+    const auto pop = [&] { return queue.wait_and_pop(master.id(), node.number(), wait, over); };
     while (const auto leaf = pop()) {  // 9, 10: B1 and B2 included
       node.begin(octree, *leaf, time.now_s());
-      const LeafCells::Entries poor = cells.take(*leaf);
-      time.spend(master.id(), time.costs().entry_given * static_cast<double>(poor.size()));
-      master.give(poor);                       // 11
-      if (!refine_leaf(node, master)) return;  // 12 to 24, on all workers of the node
-      if (!hand_over(node)) return;            // 21
-      end_leaf(node);                          // 25 to 27
+      master.give(cells.take(master.id(), *leaf));  // 11
+      if (!refine_leaf(node, master)) return;       // 12 to 24, on all workers of the node
+      if (!hand_over(node)) return;                 // 21
+      end_leaf(node);                               // 25 to 27
     }
     if (!time.is_over()) node.group().dismiss();
   }
@@ -78,24 +73,18 @@ struct Leaves {
     return is_done;
   }
 
-  void hand_over_own(Worker<Locks>& worker) {
-    time.spend(worker.id(), time.costs().entry_to_leaf * static_cast<double>(worker.num_foreign()));
-    cells.add(worker.take_foreign(), queue, over);
-  }
+  void hand_over_own(Worker<Locks>& worker) { cells.add(worker.id(), worker.take_foreign(), queue, over); }
 
   // Ends the leaf. It goes back to the queue if other nodes have listed cells of it.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
-    const double handing_over_s = time.costs().entry_to_leaf * static_cast<double>(node.num_foreign());
-    LeafSchedule::Activation activation = node.end(cells, queue, over);
-    time.spend(node.master().id(), handing_over_s);
+    LeafSchedule::Activation activation = cells.end(node, queue, over);
     if (with_schedule) {
       const std::scoped_lock lock(mutex);
       activation.end_s = time.now_s();  // under the lock: activations are listed by their ends
       schedule.push_back(std::move(activation));
     }
-    time.spend_in(&queue, node.master().id(), time.costs().leaf_handed_out);
-    queue.finish(leaf);
+    queue.finish(node.master().id(), leaf);
   }
 };
 
@@ -121,17 +110,17 @@ inline CoordinationOptions coordination_of_node(const Team& team) {
 
 // Lines 5, 6, run by all workers: the last one to end shares out the listed cells.
 template <class Time>
-void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int num_workers, Time& time,
+void distribute(const AccountedLeafCells<LeafCells, Time>& cells,
+                const AccountedQueue<RefinementQueue, Time>& queue, int num_workers, Time& time,
                 const std::stop_token& over) {
   std::atomic<std::size_t> next_slice = 0;
   std::atomic<int> num_at_work = num_workers;
   time.run([&](WorkerId self) {
     for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
          slice = next_slice++)
-      time.spend(self, time.costs().entry_to_leaf * static_cast<double>(cells.distribute(slice)));
+      cells.distribute(self, slice);
     if (--num_at_work > 0) return;
-    cells.share_out(queue, over);
-    time.spend(self, time.costs().leaf_shared_out * num_leaves);
+    cells.share_out(self, queue, over);
   });
 }
 
@@ -140,17 +129,14 @@ void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int
 // first ones of a leaf and took a third or more of its remote accesses.
 template <class Time>
 void settle(Construction& construction, const Octree& octree, const RefinementQueue& queue,
-            std::size_t workers_per_node, LeafCells& cells, Time& time) {
+            std::size_t workers_per_node, const AccountedLeafCells<LeafCells, Time>& cells, Time& time) {
   const auto relocation = construction.relocate(time, [&](const Point& p) {
     const LeafId leaf = octree.leaf_at(p);
     return leaf == kNoLeaf ? kNoWorker : static_cast<WorkerId>(queue.home_of(leaf) * workers_per_node);
   });
   if (!relocation) return;
   const auto num_workers = static_cast<std::size_t>(construction.num_workers());
-  time.run([&](WorkerId self) {
-    time.spend(self,
-               time.costs().entry_given * static_cast<double>(cells.rename(*relocation, self, num_workers)));
-  });
+  time.run([&](WorkerId self) { cells.rename(self, *relocation, num_workers); });
 }
 
 /// Refines the cells of the store, or only the living cells `only`, leaf by leaf with all workers of the
@@ -176,13 +162,13 @@ Construction::Entries refine_leaf_by_leaf(Construction& construction,
     nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
                        coordination_of_node(construction.team()), resume);
   Leaves<Locks, Time> leaves{.octree = octree,
-                             .cells = cells,
-                             .queue = queue,
+                             .cells = {cells, time},
+                             .queue = {queue, time},
                              .time = time,
                              .over = over,
                              .with_schedule = with_schedule};
-  distribute(cells, queue, octree.num_leaves(), num_workers, time, over);  // 5, 6
-  if (construction.mesh().num_nodes() > 1) settle(construction, octree, queue, per_node, cells, time);
+  distribute(leaves.cells, leaves.queue, num_workers, time, over);  // 5, 6
+  if (construction.mesh().num_nodes() > 1) settle(construction, octree, queue, per_node, leaves.cells, time);
   time.run([&](WorkerId self) {  // 7
     ComputingNode<Locks>& node = nodes[self / per_node];
     if (self % per_node == 0) {

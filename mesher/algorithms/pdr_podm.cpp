@@ -5,7 +5,6 @@
 #include "algorithms/memory_model.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -47,8 +46,8 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves
     octree = make_octree(problem, radii, levels.clamp, options, static_cast<std::uint64_t>(team.num_nodes),
                          stop.over());
+    return making_cubes(octree->num_cubes());
   });
-  construction.charge_virtual("octree", &TimeCosts::cube_made, octree->num_cubes());
   construction.reduce_capacity(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());

@@ -72,10 +72,10 @@ class Phase {
         ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);
         if (gives) worker.give(c);
       }
-      if (gives) time_.spend(self, time_.costs().cell_judged * (end - begin));
+      return end - begin;
     };
     if (gives) {
-      time_.run(list);
+      time_.run([&](WorkerId self) { judge_cells(self, list, time_); });
     } else {
       for (WorkerId self = 0; self < workers_.size(); ++self) list(self);
     }

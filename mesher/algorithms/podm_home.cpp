@@ -16,7 +16,6 @@
 #include "algorithms/podm.h"
 #include "geometry/spread_point.h"
 #include "refine/virtual_box.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -47,9 +46,11 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
   Construction construction(problem, clamp, team, stop);
   const auto num_homes = static_cast<unsigned>(team.num_nodes);
   std::optional<Homes> homes;
-  construction.timed("refine",
-                     [&] { homes.emplace(expected_work(problem, kSamplesPerHome * num_homes), num_homes); });
-  construction.charge_virtual("refine", &TimeCosts::place_looked_up, kSamplesPerHome * num_homes);
+  construction.timed("refine", [&] {
+    const std::size_t num_samples = kSamplesPerHome * num_homes;
+    homes.emplace(expected_work(problem, num_samples), num_homes);
+    return looking_up_places(num_samples);
+  });
   const Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);

@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "algorithms/podm.h"
-#include "workers/work_cost.h"
+#include "workers/accounting.h"
 
 namespace podm {
 
@@ -30,7 +30,7 @@ namespace podm {
 inline constexpr std::size_t kAwayToSend = 128;
 
 template <class Locks, class Time>
-void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
+void send_home(Worker<Locks>& worker, const AccountedGroup<Time>& group) {
   auto away = worker.take_away();
   std::sort(away.begin(), away.end(), [](const auto& a, const auto& b) {
     return std::tie(a.home, a.entry.cell) < std::tie(b.home, b.entry.cell);
@@ -39,37 +39,29 @@ void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
   for (std::size_t i = 0; i < away.size(); ++i) {
     cells.push_back(away[i].entry);
     if (i + 1 < away.size() && away[i + 1].home == away[i].home) continue;
-    time.spend(worker.id(),
-               time.costs().begging + time.costs().entry_given * static_cast<double>(cells.size()));
-    group.send(away[i].home, std::exchange(cells, {}));
+    group.send(worker.id(), away[i].home, std::exchange(cells, {}));
   }
 }
 
 template <class Locks, class Time>
-bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
+bool refine(Worker<Locks>& worker, Coordination& coordination, Time& time,
             const std::function<void()>& before_begging) {
+  const AccountedGroup group(coordination, time);
   const WorkerId self = worker.id();
   while (!time.is_over()) {
     if (worker.has_work()) {
       const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
-      const std::size_t num_listed = worker.num_listed();
-      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
+      if (worker.num_away() >= kAwayToSend) send_home(worker, group);
       const auto [answer, pause_s] = group.after(outcome, self, worker);
-      if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
-        time.spend_in(&group, self,
-                      time.costs().begging + time.costs().entry_given * static_cast<double>(given));
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
       if (before_begging) before_begging();
-      if (worker.num_away() > 0) send_home(worker, group, time);
-      time.spend_in(&group, self, time.costs().begging);
+      if (worker.num_away() > 0) send_home(worker, group);
       const Coordination::Begging begging = group.beg(self);
       if (begging == Coordination::Begging::kOver) break;
       if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
-      const Construction::Entries gift = group.take_gift(self);
-      worker.give(gift);
-      time.spend(self, time.costs().entry_given * static_cast<double>(gift.size()));
+      worker.give(group.take_gift(self));
     }
   }
   const bool is_done = !time.is_over();

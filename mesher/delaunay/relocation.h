@@ -46,6 +46,10 @@ class Relocation {
   /// Returns the id after the move; it is the same if the item stayed.
   CellId cell_now(CellId c) const { return cells_now_[c]; }
   VertexId vertex_now(VertexId v) const { return vertices_now_[v]; }
+  /// The number of workers that carry out each step.
+  std::size_t num_workers() const { return found_.size(); }
+  /// All old cell ids are below it.
+  CellId cell_bound() const { return static_cast<CellId>(cells_now_.size()); }
   /// All old vertex ids are below it.
   VertexId vertex_bound() const { return static_cast<VertexId>(vertices_now_.size()); }
 

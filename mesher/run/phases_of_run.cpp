@@ -17,7 +17,7 @@
 #include "sizing/default_sizes.h"
 #include "sizing/make_size_grid.h"
 #include "smoothing/smooth_interfaces.h"
-#include "workers/work_cost.h"
+#include "workers/accounting.h"
 
 namespace podm {
 
@@ -156,10 +156,9 @@ void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) 
   const std::uint64_t voxels = image_.voxels.size(), cells = refinement.mesh->num_cells();
   const int num_workers = team.coordination.num_workers;
   report.virtual_phases_s = refinement.virtual_phases_s;
-  report.virtual_phases_s["read"] = virtual_seconds(team, &TimeCosts::voxel_read, voxels);
-  report.virtual_phases_s["transform"] =
-      virtual_seconds(team, &TimeCosts::voxel_transformed, voxels, num_workers);
-  report.virtual_phases_s["extract"] = virtual_seconds(team, &TimeCosts::cell_extracted, cells, num_workers);
+  report.virtual_phases_s["read"] = virtual_seconds(team, reading_voxels(voxels));
+  report.virtual_phases_s["transform"] = virtual_seconds(team, transforming_voxels(voxels), num_workers);
+  report.virtual_phases_s["extract"] = virtual_seconds(team, extracting_cells(cells), num_workers);
   report.virtual_model = time_model_text(costs_of(team));
   if (!options_.team.cost_factor.empty()) report.virtual_model += options_.team.cost_factor + "\n";
   const VirtualSpending& spending = refinement.virtual_spending;

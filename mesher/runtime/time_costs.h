@@ -7,8 +7,8 @@
 // timed one by one. Commit 584d07f has counts, seconds and residuals, in
 // results/reference/amd-epyc-zen5-2-cores/README.md.
 //
-// The model is frozen: a changed value, or a changed rule that charges the values, is another model with a
-// new version.
+// The model is frozen: a changed value, or a changed rule that charges the values (workers/accounting.h), is
+// another model with a new version.
 #pragma once
 
 #include <array>

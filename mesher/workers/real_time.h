@@ -40,7 +40,7 @@ class RealTime {
     if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
     return outcome;
   }
-  /// Virtual time charges these costs. In real time they take the time they take.
+  /// Accounted operations (workers/accounting.h) cost nothing here: they take the time that they take.
   static void spend(WorkerId, double) {}
   static void spend_in(const void*, WorkerId, double) {}
   static constexpr TimeCosts costs() { return {}; }

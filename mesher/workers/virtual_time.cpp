@@ -106,9 +106,7 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   WorkerState& state = states_[self];
   state.most_steps = 0;
   state.fibre->allow(Fibre::kUnlimited);
-  // A seeded variation: attempts of equal work do not end together.
-  const double stretch = std::uniform_real_distribution(1 - costs_.spread, 1 + costs_.spread)(random_);
-  const double whole_s = stretch * reference_seconds(work) / speed_;
+  const double whole_s = draw_stretch(costs_, random_) * reference_seconds(work) / speed_;
   const bool has_failed = outcome == Outcome::kLockConflict;
   const double work_s = has_failed ? std::max(0.0, whole_s - unlocked_seconds()) : whole_s;
   RemoteMemory::Delay remote;
@@ -132,7 +130,7 @@ void VirtualTime::pass_unlocked(WorkerId self) {
 }
 
 double VirtualTime::unlocked_seconds() const {
-  return (cost_ == VirtualCost::kUnit ? kUnit / 10 : costs_.list_looked_up) / speed_;
+  return (cost_ == VirtualCost::kUnit ? kUnit / 10 : seconds_before_locks(costs_)) / speed_;
 }
 
 double VirtualTime::reference_seconds(const Work& work) const {

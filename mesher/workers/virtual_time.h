@@ -6,10 +6,10 @@
 // after the other. The same seed gives the same run to the bit. Virtual time serves tests of interleavings,
 // and studies of machines that are not at hand. Times are simulated, not measured.
 //
-// A worker's time advances by what it does. Attempts are charged for their counted work (workers/work_cost.h)
-// and, on a described machine, for the memory of other nodes that they access (workers/remote_memory.h).
-// Between attempts a worker is charged what the algorithm says that it spends. No cost depends on the
-// algorithm or on the number of workers.
+// A worker's time advances by what it does. Attempts are charged for their counted work and, on a described
+// machine, for the memory of other nodes that they access (workers/remote_memory.h). Between attempts a
+// worker is charged for its operations on objects that workers share. workers/accounting.h has the rules. No
+// cost depends on the algorithm or on the number of workers.
 //
 // In a build with PODM_INTERLEAVING an attempt takes its virtual time in parts and holds its locks meanwhile:
 // it stops at steps (delaunay/step.h), and other workers run in between.
@@ -26,9 +26,9 @@
 #include "refine/outcome.h"
 #include "runtime/fibre.h"
 #include "runtime/worker_id.h"
+#include "workers/accounting.h"
 #include "workers/remote_memory.h"
 #include "workers/stop_control.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -91,7 +91,7 @@ class VirtualTime {
     return states_[worker.id()].overhead;
   }
   const VirtualSpending& spending() const { return spending_; }
-  /// The costs that a worker may spend.
+  /// The costs that accounted operations spend.
   const TimeCosts& costs() const { return costs_; }
 
  private:
