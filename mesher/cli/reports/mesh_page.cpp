@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "cli/processes/python_scripts.h"
 #include "cli/reports/json_text.h"
@@ -45,7 +46,7 @@ void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& sig
   told.write(json_line({{"mesh", readable},
                         {"name", mesh_path.filename().string()},
                         {"record", record(run)},
-                        {"verification", run.verification},
+                        {"verification", run.verification ? *run.verification : nlohmann::ordered_json()},
                         {"unmet", run.unmet()}}));
   told.publish();
   AtomicFile page(path);
