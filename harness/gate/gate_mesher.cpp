@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "process/warm_memory.h"
+#include "rows/codec.h"
 
 namespace podm::bench {
 namespace {
