@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gate/gate_budget.h"
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 
 namespace podm::bench {
