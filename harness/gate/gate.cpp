@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "errors.h"
 #include "gate/drawn_order.h"
 #include "gate/gate_budget.h"
 #include "gate/gate_mesher.h"

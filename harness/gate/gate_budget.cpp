@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "errors.h"
 #include "machine/environment.h"
 #include "rows/codec.h"
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "errors.h"
 #include "process/warm_memory.h"
 #include "rows/codec.h"
 

@@ -54,7 +54,7 @@ struct MesherOption {
 constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// What the harness does with one process of podm, and not with ranks.
+// The harness supports these options for one process of podm, and not for ranks.
 constexpr std::array kOfOneProcess{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.

@@ -214,7 +214,7 @@ struct TopologyRecord {
   }
 };
 
-/// What podm-verify needs to judge a mesh, beside the mesh and the image: claims, and options with their
+/// The inputs of podm-verify beside the mesh and the image: claims, and options with their
 /// bounds.
 struct JudgingRecord {
   std::vector<std::string> claims, options;

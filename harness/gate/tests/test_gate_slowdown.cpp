@@ -9,6 +9,7 @@
 #include "gate/drawn_order.h"
 #include "gate/gate_evidence.h"
 #include "gate/simulated_machine.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "errors.h"
 #include "machine/environment.h"
 #include "machine/machine.h"
 #include "process/sha256.h"
