@@ -37,12 +37,6 @@ template <class T, class Fields>
 void read_fields(const Json& json, const std::string& place, const Fields& fields, T& value);
 
 template <>
-struct Codec<Json> {
-  static Json write(const Json& value) { return value; }
-  static Json read(const Json& json, const std::string&) { return json; }
-};
-
-template <>
 struct Codec<JsonPointer> {
   static Json write(const JsonPointer& value) { return value ? *value : Json(); }
   static JsonPointer read(const Json& json, const std::string&) {
