@@ -261,7 +261,7 @@ Json optimization_of(const MeshingReport& report) {
           {"successes", counts_of(done.successes)}};
 }
 
-// What podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
+// The inputs that podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
 Json verify_of(const MeshRun& run) {
   if (run.mesh.cells == 0) return nullptr;
   const Judging judging = judging_of(run);
