@@ -1,5 +1,7 @@
 #include "claim.h"
 
+#include <nlohmann/json.hpp>
+
 namespace podm::verify {
 
 std::string to_string(Verdict verdict) {
@@ -12,6 +14,10 @@ std::string to_string(Verdict verdict) {
       break;
   }
   return "not_run";
+}
+
+std::shared_ptr<nlohmann::json> ClaimResult::empty_details() {
+  return std::make_shared<nlohmann::json>(nlohmann::json::object());
 }
 
 }  // namespace podm::verify

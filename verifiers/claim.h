@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,14 @@ struct ClaimResult {
   std::vector<Witness> worst;        ///< at most kMaxWitnesses, worst first; on a pass the closest calls
   std::vector<CellId> bad_cells;     ///< every cell in a violation, ascending, each once: for --extract-bad
   std::vector<Histogram> histograms;
-  nlohmann::json details = nlohmann::json::object();  ///< further numbers, by name with units
-  double seconds = 0;                                 ///< wall time, filled by the caller
+  double seconds = 0;  ///< wall time, filled by the caller
+
+  /// Further numbers, by name with units: an object. Copies of a result share it.
+  nlohmann::json& details() const { return *details_; }
+
+ private:
+  std::shared_ptr<nlohmann::json> details_ = empty_details();
+  static std::shared_ptr<nlohmann::json> empty_details();
 };
 
 }  // namespace podm::verify

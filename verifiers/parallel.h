@@ -6,6 +6,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace podm::verify {
@@ -37,6 +38,18 @@ void parallel_ranges(std::size_t count, int threads, Body body) {
   run(0);
   helpers.clear();  // joins
   if (failure) std::rethrow_exception(failure);
+}
+
+/// Calls body(begin, end, part) for the ranges of parallel_ranges(). Each thread has a part of its own, which
+/// begins as a copy of `empty`. Returns the sum of the parts by their add(), in the order of the ranges.
+template <class Part, class Body>
+Part sum_over_ranges(std::size_t count, int threads, const Part& empty, const Body& body) {
+  std::vector<Part> parts(static_cast<std::size_t>(std::max(threads, 1)), empty);
+  parallel_ranges(count, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    body(begin, end, parts[thread]);
+  });
+  for (std::size_t t = 1; t < parts.size(); ++t) parts[0].add(parts[t]);
+  return std::move(parts[0]);
 }
 
 }  // namespace podm::verify

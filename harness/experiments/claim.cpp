@@ -23,13 +23,13 @@ std::size_t read_word(TomlSection& section, const char* key, const std::array<co
   const std::string text = is_needed ? section.text(key) : section.text(key, words[0]);
   const auto found = std::find(words.begin(), words.end(), text);
   if (found == words.end())
-    section.fail(section.place(key), fmt::format("{} must be one of {}", key, fmt::join(words, ", ")));
+    section.fail(key, fmt::format("{} must be one of {}", key, fmt::join(words, ", ")));
   return static_cast<std::size_t>(found - words.begin());
 }
 
 std::vector<std::string> read_texts(TomlSection& section, const char* key) {
   std::vector<std::string> texts;
-  for (const toml::node* node : section.values(key)) texts.push_back(section.text_of(*node, key));
+  for (const TomlValue& text : section.values(key)) texts.push_back(text.text());
   return texts;
 }
 
@@ -41,35 +41,36 @@ Trials trials_of(const TomlSection& section, const std::vector<std::string>& pat
     const std::size_t before = chosen.size();
     for (const ClaimedTrial& trial : all)
       if (fnmatch(pattern.c_str(), trial.stem.c_str(), 0) == 0) chosen.push_back(trial);
-    if (chosen.size() == before)
-      section.fail(section.place("trials"), fmt::format("no trial is called '{}'", pattern));
+    if (chosen.size() == before) section.fail("trials", fmt::format("no trial is called '{}'", pattern));
   }
   return chosen;
 }
 
-Json json_of(const TomlSection& section, const toml::node& node, const std::string& key) {
-  if (const auto text = node.value_exact<std::string>()) return *text;
-  if (const auto integer = node.value_exact<std::int64_t>()) return *integer;
-  if (const auto flag = node.value_exact<bool>()) return *flag;
-  return section.number_of(node, key);
+Json json_of(const TomlValue& value) {
+  if (const auto* const text = value.as<std::string>()) return *text;
+  if (const auto* const integer = value.as<std::int64_t>()) return *integer;
+  if (const auto* const flag = value.as<bool>()) return *flag;
+  return value.number();
 }
 
 // True for numbers of threads and copies, which depend on the machine. Any other value must be in the file.
 bool depends_on_machine(const std::string& key) { return key.ends_with("threads") || key == "copies"; }
 
-void refuse_unknown(const TomlSection& section, const toml::node& node, const std::string& key,
-                    const Json& value, const Trials& trials) {
-  const auto asks = [&](const ClaimedTrial& trial) { return option(trial.options, key) == value; };
-  if ((depends_on_machine(key) && value.is_number()) || std::any_of(trials.begin(), trials.end(), asks))
+void refuse_unknown(const TomlValue& value, const Trials& trials) {
+  const Json wanted = json_of(value);
+  const auto asks = [&](const ClaimedTrial& trial) { return option(trial.options, value.key) == wanted; };
+  if ((depends_on_machine(value.key) && wanted.is_number()) ||
+      std::any_of(trials.begin(), trials.end(), asks))
     return;
-  section.fail(node.source(), fmt::format("no trial of the claim has {}", describe(key, value)));
+  value.fail(fmt::format("no trial of the claim has {}", describe(value.key, wanted)));
 }
 
-void refuse_unknown_key(const TomlSection& section, const toml::source_region& place, const std::string& key,
+// Throws at the value of `place_key` unless some trial has the option `key`.
+void refuse_unknown_key(const TomlSection& section, const char* place_key, const std::string& key,
                         const Trials& trials) {
   const auto has = [&](const ClaimedTrial& trial) { return trial.options.contains(key); };
   if (std::none_of(trials.begin(), trials.end(), has))
-    section.fail(place, fmt::format("no trial of the claim has the option '{}'", key));
+    section.fail(place_key, fmt::format("no trial of the claim has the option '{}'", key));
 }
 
 Condition read_range(TomlSection& options, const std::string& key) {
@@ -78,7 +79,7 @@ Condition read_range(TomlSection& options, const std::string& key) {
   condition.at_least = range.number("at_least");
   condition.at_most = range.number("at_most");
   if (!condition.at_least && !condition.at_most)
-    options.fail(options.place(key), fmt::format("{} needs at_least or at_most", key));
+    options.fail(key, fmt::format("{} needs at_least or at_most", key));
   range.done();
   return condition;
 }
@@ -89,29 +90,28 @@ Filter read_filter(TomlSection& section, const char* key, const Trials& trials) 
   if (!section.has(key)) return filter;
   TomlSection options = section.table(key);
   for (const std::string& name : options.keys()) {
-    refuse_unknown_key(options, options.place(name), name, trials);
+    refuse_unknown_key(options, name.c_str(), name, trials);
     if (options.is_table(name)) {
       filter.push_back(read_range(options, name));
       continue;
     }
     Condition condition{name, {}, {}, {}};
-    for (const toml::node* node : options.values(name)) {
-      condition.values.push_back(json_of(options, *node, name));
-      refuse_unknown(options, *node, name, condition.values.back(), trials);
+    for (const TomlValue& value : options.values(name)) {
+      refuse_unknown(value, trials);
+      condition.values.push_back(json_of(value));
     }
     filter.push_back(std::move(condition));
   }
-  if (filter.empty()) section.fail(section.place(key), fmt::format("{} names no option", key));
+  if (filter.empty()) section.fail(key, fmt::format("{} names no option", key));
   return filter;
 }
 
 void read_bounds(TomlSection& section, Claim& claim) {
   claim.at_least = section.number("at_least");
   claim.at_most = section.number("at_most");
-  if (!claim.at_least && !claim.at_most)
-    section.fail(section.place(), "[[claims]] needs at_least or at_most");
+  if (!claim.at_least && !claim.at_most) section.fail("[[claims]] needs at_least or at_most");
   if (claim.at_least && claim.at_most && *claim.at_least > *claim.at_most)
-    section.fail(section.place("at_most"), "at_most is less than at_least");
+    section.fail("at_most", "at_most is less than at_least");
 }
 
 // Reads the series of a ratio or an order. The kind of the claim names their keys.
@@ -123,19 +123,19 @@ void read_series(TomlSection& section, const Trials& trials, const char* of, con
     return;
   }
   if (section.text(over) != kBestOfOthers)
-    section.fail(section.place(over), fmt::format("{} must be a table or \"{}\"", over, kBestOfOthers));
+    section.fail(over, fmt::format("{} must be a table or \"{}\"", over, kBestOfOthers));
   claim.over_best = true;
 }
 
 void read_across(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.across = read_texts(section, "across");
   for (const std::string& key : claim.across)
-    if (key != kInput) refuse_unknown_key(section, section.place("across"), key, trials);
+    if (key != kInput) refuse_unknown_key(section, "across", key, trials);
 }
 
 void read_trend(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.along = section.text("along");
-  refuse_unknown_key(section, section.place("along"), claim.along, trials);
+  refuse_unknown_key(section, "along", claim.along, trials);
   claim.grows = read_word(section, "direction", std::array{"falls", "grows"}) == 1;
   claim.factor_per_doubling = section.positive("factor_per_doubling", 0);
 }
@@ -143,10 +143,9 @@ void read_trend(TomlSection& section, const Trials& trials, Claim& claim) {
 void read_share(TomlSection& section, Claim& claim) {
   claim.at_least = section.positive("at_least", 0);
   if (!section.has("at_least") || *claim.at_least > 1)
-    section.fail(section.has("at_least") ? section.place("at_least") : section.place(),
-                 "a share needs at_least, up to 1");
+    section.fail("at_least", "a share needs at_least, up to 1");
   if (!is_yes_or_no(*claim.value))
-    section.fail(section.place("value"), fmt::format("{} is not 0 or 1 in each row", claim.value->name));
+    section.fail("value", fmt::format("{} is not 0 or 1 in each row", claim.value->name));
 }
 
 const Measure* read_measure(TomlSection& section, Basis basis) {
@@ -154,12 +153,12 @@ const Measure* read_measure(TomlSection& section, Basis basis) {
   if (measure == nullptr) {
     std::vector<const char*> names;
     for (const Measure& known : measures()) names.push_back(known.name);
-    section.fail(section.place("value"), fmt::format("value must be one of {}", fmt::join(names, ", ")));
+    section.fail("value", fmt::format("value must be one of {}", fmt::join(names, ", ")));
   }
   if (!fits(*measure, basis))
-    section.fail(section.place("value"), fmt::format("{} means something else in rows of another basis than "
-                                                     "the claim's, {}",
-                                                     measure->name, to_string(basis)));
+    section.fail("value", fmt::format("{} means something else in rows of another basis than "
+                                      "the claim's, {}",
+                                      measure->name, to_string(basis)));
   return measure;
 }
 
@@ -199,16 +198,16 @@ Claim read_claim(TomlSection& section, const Trials& all_trials) {
   claim.extent = static_cast<Extent>(
       read_word(section, "extent", std::array{"all", "one socket", "most threads"}, false));
   if (claim.extent == Extent::kOneSocket && claim.basis != Basis::kMeasured)
-    section.fail(section.place("extent"), "rows do not record the sockets of a simulated machine");
+    section.fail("extent", "rows do not record the sockets of a simulated machine");
   claim.needs_cores = static_cast<int>(section.count("needs_cores", 0, 1, kMostCores));
   if (claim.needs_cores > 0 && claim.basis != Basis::kMeasured)
-    section.fail(section.place("needs_cores"), "needs_cores applies to measured rows only");
+    section.fail("needs_cores", "needs_cores applies to measured rows only");
   claim.value = read_measure(section, claim.basis);
   read_kind(section, trials, claim);
   claim.supersedes = read_texts(section, "supersedes");
   claim.reason = section.text("reason", "");
   if (!claim.supersedes.empty() && claim.reason.empty())
-    section.fail(section.place("supersedes"), "a claim that supersedes others needs a reason");
+    section.fail("supersedes", "a claim that supersedes others needs a reason");
   section.done();
   return claim;
 }

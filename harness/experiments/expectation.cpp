@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "options/option_matrix.h"
-#include "rows/statistics.h"
+#include "options/option_keys.h"
+#include "rows/order_statistics.h"
 #include "rows/table.h"
 
 namespace podm::bench {

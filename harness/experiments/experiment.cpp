@@ -46,7 +46,7 @@ Tier read_tier(TomlSection& section, Tier otherwise) {
   try {
     return parse_tier(text);
   } catch (const InputError& error) {
-    section.fail(section.place("tier"), error.what());
+    section.fail("tier", error.what());
   }
 }
 
@@ -63,21 +63,20 @@ void read_run_settings(TomlSection& section, Trial& trial) {
 std::string read_name(TomlSection& section) {
   const std::string name = section.text("name");
   if (name.front() == '.' || in_name(name) != name)
-    section.fail(section.place("name"), "a trial's name may have letters, digits and . _ - only");
+    section.fail("name", "a trial's name may have letters, digits and . _ - only");
   return name;
 }
 
 // Returns one empty name if the trial needs no input.
 std::vector<std::string> read_input_names(TomlSection& section, const Inputs& inputs) {
   if (section.has(kMeasure)) {
-    if (section.has("input")) section.fail(section.place("input"), "input is an option of meshers");
+    if (section.has("input")) section.fail("input", "input is an option of meshers");
     return {""};
   }
   std::vector<std::string> names;
-  for (const toml::node* node : section.values("input")) {
-    names.push_back(section.text_of(*node, "input"));
-    if (!inputs.contains(names.back()))
-      section.fail(node->source(), fmt::format("there is no [inputs.{}]", names.back()));
+  for (const TomlValue& input : section.values("input")) {
+    names.push_back(input.text());
+    if (!inputs.contains(names.back())) input.fail(fmt::format("there is no [inputs.{}]", names.back()));
   }
   if (names.empty()) section.text("input");  // throws: the key is absent
   return names;
@@ -112,9 +111,8 @@ void grow(const TomlSection& section, bool is_given, Trial& trial) {
   const auto image = grown(trial.image, trial.options["threads"].get<double>());
   if (image) trial.image = *image;
   if (!image && !is_given)
-    section.fail(
-        section.place(kImageGrows),
-        fmt::format("{} needs a phantom and its size, phantom:NAME@SIZE, not {}", kImageGrows, trial.image));
+    section.fail(kImageGrows, fmt::format("{} needs a phantom and its size, phantom:NAME@SIZE, not {}",
+                                          kImageGrows, trial.image));
 }
 
 // Reads the matrix of one [[trials]].
@@ -167,8 +165,8 @@ std::size_t Experiment::num_turns() const {
 }
 
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) try {
-  const toml::table table = parse_toml(path);
-  TomlSection file(path, table, "an experiment");
+  const TomlValue table = parse_toml(path);
+  TomlSection file(table, "an experiment");
   const std::string folder = fs::path(path).parent_path().string();
   Experiment experiment;
   experiment.name = fs::path(path).stem().string();
@@ -185,7 +183,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   for (TomlSection& section : file.table_array("trials"))
     for (Trial& trial : read_trials(section, inputs, head, folder, images)) {
       if (!names.insert(trial.name).second)
-        section.fail(section.place("name"), fmt::format("a second trial '{}'", trial.name));
+        section.fail("name", fmt::format("a second trial '{}'", trial.name));
       experiment.trials.push_back(std::move(trial));
     }
   experiment.claims = read_claims(file, experiment.trials);

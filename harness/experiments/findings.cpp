@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {

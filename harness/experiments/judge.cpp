@@ -103,7 +103,7 @@ std::string missing_cores(const Claim& claim, const RowPointers& rows) {
   return *cores >= claim.needs_cores ? "" : fmt::format("needs {} cores, has {}", claim.needs_cores, *cores);
 }
 
-double threads_of(const Row& row) { return row.asked.value("threads", 1.0); }
+double threads_of(const Row& row) { return asked_of(row).value("threads", 1.0); }
 
 RowPointers within_extent(const Claim& claim, RowPointers rows) {
   if (rows.empty() || claim.extent == Extent::kAll) return rows;

@@ -10,9 +10,10 @@
 #include <optional>
 #include <set>
 
+#include "rows/codec.h"
 #include "rows/machine_state.h"
+#include "rows/order_statistics.h"
 #include "rows/row_filter.h"
-#include "rows/statistics.h"
 
 namespace podm::bench {
 namespace {
@@ -98,7 +99,7 @@ class Keys {
   // A target number of cells replaces a radius that was found for it, as two meshers may reach the number
   // with different radii.
   static std::string settings(const Row& row) {
-    Json options = row.mesh->options.value_or(Json::object());
+    Json options = row.mesh->options ? *row.mesh->options : Json::object();
     if (row.resolved) {
       for (const char* key : {"radius_mm", "delta_mm"}) options.erase(key);
       options["target_elements"] = row.resolved->target_elements;
@@ -206,11 +207,12 @@ std::vector<double> values(const Rows& rows, const Metric& metric) {
   return found;
 }
 
-const char* judgement(const Ratio& ratio, Wanted wanted) {
+const char* judgement(const Interval& ratio, Wanted wanted) {
   if (wanted == Wanted::kNeither) return "";
+  if (ratio.coverage < kConfidence) return "not resolved";
   const bool is_more = ratio.low > kNegligible, is_less = ratio.high < 1 / kNegligible;
-  if (!is_more && !is_less) return "same";
-  return is_more == (wanted == Wanted::kMore) ? "better" : "WORSE";
+  if (is_more || is_less) return is_more == (wanted == Wanted::kMore) ? "better" : "WORSE";
+  return ratio.low >= 1 / kNegligible && ratio.high <= kNegligible ? "same" : "not resolved";
 }
 
 void add_metric(const Group& group, const Metric& metric, Comparison& result) {
@@ -223,15 +225,12 @@ void add_metric(const Group& group, const Metric& metric, Comparison& result) {
     result.text += "  no ratio\n";
     return;
   }
-  const Ratio ratio = ratio_of_medians(b, a, Sampling::kIndependent);
-  result.text += fmt::format(" {:>8.3f}", ratio.value);
-  if (!(metric.is_work && has_one_thread(group)) && std::min(a.size(), b.size()) < kFewestRepeats) {
-    result.text += fmt::format("  no interval of {} and {} rows\n", a.size(), b.size());
-    return;
-  }
+  Interval ratio = ratio_interval(b, a);
+  if (metric.is_work && has_one_thread(group)) ratio.coverage = 1;  // each run repeats the number
   const std::string verdict = judgement(ratio, metric.wanted);
   result.is_worse = result.is_worse || verdict == "WORSE";
-  result.text += fmt::format("  [{:.3f}, {:.3f}]  {}\n", ratio.low, ratio.high, verdict);
+  result.text += fmt::format(" {:>8.3f}  [{:.3f}, {:.3f}]  {:>5.1f} %  {}\n", median_b / median_a, ratio.low,
+                             ratio.high, 100 * ratio.coverage, verdict);
 }
 
 }  // namespace
@@ -270,8 +269,8 @@ Comparison compare(const Rows& a, const Rows& b) {
   check_machines(groups);
   Comparison result;
   for (const Group& group : groups) add_differences(group, result);
-  result.text += fmt::format("{:<24} {:<16} {:>14} {:>14} {:>8}  95 % interval\n", "trial", "median of", "A",
-                             "B", "B/A");
+  result.text += fmt::format("{:<24} {:<16} {:>14} {:>14} {:>8}  interval, its coverage, verdict\n", "trial",
+                             "median of", "A", "B", "B/A");
   for (const Group& group : groups)
     for (const Metric& metric : kMetrics) add_metric(group, metric, result);
   return result;

@@ -22,13 +22,13 @@ struct Comparison {
 };
 
 /// Compares rows of equal trial, input, algorithm, options, seed and threads. Several matching rows are
-/// repeated measurements. A value is worse when the 95 % interval of B's median over A's lies beyond 2 % on
-/// the value's bad side. The value has an interval when both sides have kFewestRepeats rows or one thread
-/// decides it. Throws InputError when no row of `a` matches a row of `b`. Throws InputError that names both
-/// machines when two of the matching rows were measured on different machines. Records of the mesher alone
-/// name no machine: the caller must ensure that they are of one machine.
+/// repeated measurements. A value is worse when the interval of B's median over A's lies beyond 2 % on the
+/// value's bad side, and "same" when the interval lies within 2 %. The interval decides if its coverage is at
+/// least kConfidence (rows/order_statistics.h), which takes seven rows on both sides, or if the value is the
+/// work of one thread, which each run repeats. Throws InputError when no row of `a` matches a row of `b`.
+/// Throws InputError that names both machines when two of the matching rows were measured on different
+/// machines. Records of the mesher alone name no machine: the caller must ensure that they are of one
+/// machine.
 Comparison compare(const std::vector<Row>& a, const std::vector<Row>& b);
-
-inline constexpr int kFewestRepeats = 5;  ///< fewer rows show too little of the spread
 
 }  // namespace podm::bench

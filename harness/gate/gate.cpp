@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <thread>
 
+#include "errors.h"
 #include "gate/drawn_order.h"
 #include "gate/gate_budget.h"
 #include "gate/gate_mesher.h"
 #include "gate/gate_slowdown.h"
+#include "rows/codec.h"
 
 namespace podm::bench {
 namespace {
@@ -76,7 +78,7 @@ bool work_passes(const Budgets& budgets, const std::string& podm, const GateMesh
   return passes;
 }
 
-std::string text_of(const Ratio& ratio) {
+std::string text_of(const CentreEstimate& ratio) {
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", ratio.value, ratio.low, ratio.high);
 }
 

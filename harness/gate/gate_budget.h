@@ -11,22 +11,13 @@
 namespace podm::bench {
 
 /// Work and result of one thread's mesh, in values that each run repeats exactly.
-struct Work {
+struct Work : WorkRecord {
   std::optional<std::uint64_t> cells, vertices;
-  std::optional<ByName<std::uint64_t>> insertions;  ///< by rule
-  std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
   std::optional<std::string> mesh_sha256;
   static constexpr auto fields() {
-    using W = Work;
-    return std::tuple{field_if_any("cells", &W::cells),
-                      field_if_any("vertices", &W::vertices),
-                      field_if_any("insertions", &W::insertions),
-                      field_if_any("removals", &W::removals),
-                      field_if_any("classified_cells", &W::classified_cells),
-                      field_if_any("conflict_tests", &W::conflict_tests),
-                      field_if_any("exact_decisions", &W::exact_decisions),
-                      field_if_any("cells_created", &W::cells_created),
-                      field_if_any("mesh_sha256", &W::mesh_sha256)};
+    return std::tuple_cat(
+        std::tuple{field_if_any("cells", &Work::cells), field_if_any("vertices", &Work::vertices)},
+        WorkRecord::fields(), std::tuple{field_if_any("mesh_sha256", &Work::mesh_sha256)});
   }
 };
 

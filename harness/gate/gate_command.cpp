@@ -6,6 +6,7 @@
 #include "gate/gate_budget.h"
 #include "gate/gate_evidence.h"
 #include "process/stop_request.h"
+#include "rows/codec.h"
 #include "rows/results_file.h"
 
 namespace podm::bench {

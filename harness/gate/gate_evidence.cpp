@@ -6,6 +6,7 @@
 
 #include "gate/simulated_machine.h"
 #include "rows/binomial.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {

@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "errors.h"
 #include "process/warm_memory.h"
+#include "rows/codec.h"
 
 namespace podm::bench {
 namespace {

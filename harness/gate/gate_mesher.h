@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "options/trial_settings.h"
 #include "process/ask.h"
 #include "rows/mesher_record.h"
 

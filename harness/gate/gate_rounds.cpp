@@ -11,6 +11,7 @@
 #include "gate/drawn_order.h"
 #include "machine/environment.h"
 #include "process/stopwatch.h"
+#include "rows/codec.h"
 #include "rows/machine_state.h"
 #include "rows/results_file.h"
 

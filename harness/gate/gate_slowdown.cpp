@@ -3,8 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "rows/signed_rank.h"
-
 namespace podm::bench {
 
 const char* to_string(Answer answer) {
@@ -26,8 +24,8 @@ double Slowdown::rounds_for_an_answer() const {
 
 // Only seconds of one round are divided by each other: the machine's speed changes more between rounds than a
 // program's speed may.
-Ratio head_over_base(std::span<const Round> rounds) {
-  constexpr double kConfidenceOfLook = 1 - (1 - kConfidence) / kLooks.size();
+CentreEstimate head_over_base(std::span<const Round> rounds) {
+  constexpr double kConfidenceOfLook = 1 - (1 - kConfidenceOfLooks) / kLooks.size();
   std::vector<double> logarithms;
   logarithms.reserve(rounds.size());
   for (const Round& round : rounds) logarithms.push_back(std::log(round.head_s / round.base_s));

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "rows/statistics.h"
+#include "rows/signed_rank.h"
 
 namespace podm::bench {
 
@@ -26,11 +26,11 @@ const char* to_string(Answer answer);
 inline constexpr double kNoticeable = 1.01, kSevere = 1.04;
 inline constexpr std::array kLooks{10, 15, 22, 33, 50, 75, 112, 168};
 /// The probability that the intervals of all looks hold the true ratio.
-inline constexpr double kConfidence = 0.95;
+inline constexpr double kConfidenceOfLooks = 0.95;
 
 struct Slowdown {
   Answer answer = Answer::kNotResolved;
-  Ratio ratio;  ///< head over base
+  CentreEstimate ratio;  ///< head over base
   int num_rounds = 0;
 
   /// An estimate: the interval narrows with the square root of the number of rounds.
@@ -38,8 +38,8 @@ struct Slowdown {
 };
 
 /// Returns the centre of the ratios head over base and its interval at one look. The confidence of a look is
-/// raised so that all looks together have kConfidence (Bonferroni). Requires at least one round.
-Ratio head_over_base(std::span<const Round> rounds);
+/// raised so that all looks together have kConfidenceOfLooks (Bonferroni). Requires at least one round.
+CentreEstimate head_over_base(std::span<const Round> rounds);
 
 /// Takes rounds until there is an answer. Returns nothing if `next_round` runs out of rounds before.
 /// Exceptions of `next_round` pass through.

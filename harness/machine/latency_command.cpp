@@ -4,6 +4,7 @@
 
 #include "machine/commands.h"
 #include "machine/memory_levels.h"
+#include "rows/codec.h"
 #include "rows/results_file.h"
 
 namespace podm::bench {

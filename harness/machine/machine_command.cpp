@@ -5,6 +5,7 @@
 #include "machine/commands.h"
 #include "machine/machine.h"
 #include "machine/probe.h"
+#include "rows/codec.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {

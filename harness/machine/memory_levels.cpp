@@ -13,7 +13,7 @@
 #include "machine/machine.h"
 #include "machine/pointer_chase.h"
 #include "process/ask.h"
-#include "rows/statistics.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {

@@ -54,7 +54,7 @@ struct MesherOption {
 constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                      kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// Options that the harness supports for one process of podm, and not for ranks.
+// The harness supports these options for one process of podm, and not for ranks.
 constexpr std::array kSingleProcessOptions{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.
@@ -122,89 +122,81 @@ const std::vector<MesherOption>& mesher_options() {
 
 // Returns the counts that a value stands for: "all" is the number of usable processors; "1..all" is the
 // powers of two below that number, and the number.
-std::vector<Json> thread_counts(const TomlSection& section, const toml::node& node, std::string_view key) {
-  if (!node.is_string()) return {section.count_of(node, key, 1, kMaxThreads)};
+std::vector<Json> thread_counts(const TomlValue& value) {
+  if (value.as<std::string>() == nullptr) return {value.count(1, kMaxThreads)};
   const std::int64_t all = usable_processors();
-  const std::string text = section.text_of(node, key);
+  const std::string text = value.text();
   if (text == "all") return {all};
   if (text != kPowersOfTwo)
-    section.fail(node.source(), fmt::format("{} must be an integer, \"all\" or \"{}\"", key, kPowersOfTwo));
+    value.fail(fmt::format("{} must be an integer, \"all\" or \"{}\"", value.key, kPowersOfTwo));
   std::vector<Json> counts;
   for (std::int64_t count = 1; count < all; count *= 2) counts.push_back(count);
   counts.push_back(all);
   return counts;
 }
 
-Json switch_value(const TomlSection& section, const toml::node& node, std::string_view key) {
-  if (const auto value = node.value_exact<bool>()) return *value;
-  if (const auto value = node.value_exact<std::int64_t>()) return *value;
-  return section.text_of(node, key);
+Json switch_value(const TomlValue& value) {
+  if (const auto* const flag = value.as<bool>()) return *flag;
+  if (const auto* const integer = value.as<std::int64_t>()) return *integer;
+  return value.text();
 }
 
 // Throws unless the name of a group has no folder in it: groups are files of one folder.
-std::string counters_value(const TomlSection& section, const toml::node& node, std::string_view key) {
-  const std::string choice = section.text_of(node, key);
+std::string counters_value(const TomlValue& value) {
+  const std::string choice = value.text();
   const bool is_group = choice.starts_with(kLikwid) && choice.size() > std::strlen(kLikwid) &&
                         choice.find('/') == std::string::npos;
   if (!is_group && choice != kPerfEvent && choice != kCachegrind)
-    section.fail(node.source(), fmt::format("{} must be \"{}\", \"{}\" or \"{}GROUP\"", key, kPerfEvent,
-                                            kCachegrind, kLikwid));
+    value.fail(
+        fmt::format("{} must be \"{}\", \"{}\" or \"{}GROUP\"", value.key, kPerfEvent, kCachegrind, kLikwid));
   return choice;
 }
 
-std::string measure_value(const TomlSection& section, const toml::node& node, std::string_view key) {
-  if (section.text_of(node, key) != kMemoryLatency)
-    section.fail(node.source(), fmt::format("{} must be \"{}\"", key, kMemoryLatency));
-  return kMemoryLatency;
+std::string word_among(const TomlValue& value, std::initializer_list<const char*> words) {
+  const std::string text = value.text();
+  if (std::find(words.begin(), words.end(), text) == words.end())
+    value.fail(fmt::format("{} must be one of {}", value.key, fmt::join(words, ", ")));
+  return text;
 }
 
-std::string carrier_value(const TomlSection& section, const toml::node& node, std::string_view key) {
-  const std::string carrier = section.text_of(node, key);
-  if (carrier != kMpi && carrier != kInProcess)
-    section.fail(node.source(), fmt::format("{} must be \"{}\" or \"{}\"", key, kMpi, kInProcess));
-  return carrier;
-}
-
-std::string network_value(const TomlSection& section, const toml::node& node, std::string_view key) {
-  const std::string network = section.text_of(node, key);
+std::string network_value(const TomlValue& value) {
+  const std::string network = value.text();
   double latency_us = -1, gb_per_s = -1;
   char more = 0;
   if (std::sscanf(network.c_str(), "%lf,%lf%c", &latency_us, &gb_per_s, &more) != 2 || !(latency_us > 0) ||
       !(gb_per_s > 0) || std::isinf(latency_us) || std::isinf(gb_per_s))
-    section.fail(node.source(), fmt::format("{} must be \"MICROSECONDS,GB_PER_S\", such as \"2,12.5\"", key));
+    value.fail(fmt::format("{} must be \"MICROSECONDS,GB_PER_S\", such as \"2,12.5\"", value.key));
   return network;
 }
 
-std::vector<Json> read_value(const TomlSection& section, const toml::node& node, const MesherOption& option,
-                             const std::string& folder) {
-  const std::string key = option.key;
+std::vector<Json> read_value(const TomlValue& value, const MesherOption& option, const std::string& folder) {
   switch (option.kind) {
     case Kind::kPositive:
-      return {section.positive_of(node, key)};
+      return {value.positive()};
     case Kind::kCount:
-      return {section.count_of(node, key, 1, option.most)};
+      return {value.count(1, option.most)};
     case Kind::kSeed:
-      return {section.count_of(node, key, 0, kMaxSeed)};
+      return {value.count(0, kMaxSeed)};
     case Kind::kWord:
-      return {section.text_of(node, key)};
+      return {value.text()};
     case Kind::kSwitch:
-      return {switch_value(section, node, key)};
+      return {switch_value(value)};
     case Kind::kFlag:
-      return {section.flag_of(node, key)};
+      return {value.flag()};
     case Kind::kFile:
-      return {(std::filesystem::path(folder) / section.text_of(node, key)).lexically_normal().string()};
+      return {(std::filesystem::path(folder) / value.text()).lexically_normal().string()};
     case Kind::kCounters:
-      return {counters_value(section, node, key)};
+      return {counters_value(value)};
     case Kind::kMeasure:
-      return {measure_value(section, node, key)};
+      return {word_among(value, {kMemoryLatency})};
     case Kind::kCarrier:
-      return {carrier_value(section, node, key)};
+      return {word_among(value, {kMpi, kInProcess})};
     case Kind::kNetwork:
-      return {network_value(section, node, key)};
+      return {network_value(value)};
     case Kind::kThreads:
       break;
   }
-  return thread_counts(section, node, key);
+  return thread_counts(value);
 }
 
 void multiply(std::vector<Variant>& variants, const std::string& key, const std::vector<Json>& values,
@@ -222,8 +214,8 @@ void multiply(std::vector<Variant>& variants, const std::string& key, const std:
 // Returns the values of an option, each once: on two processors [1, 2, "all"] gives 1, 2.
 std::vector<Json> read_values(TomlSection& section, const MesherOption& option, const std::string& folder) {
   std::vector<Json> values;
-  for (const toml::node* node : section.values(option.key))
-    for (Json& value : read_value(section, *node, option, folder))
+  for (const TomlValue& given : section.values(option.key))
+    for (Json& value : read_value(given, option, folder))
       if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(std::move(value));
   return values;
 }
@@ -233,38 +225,34 @@ void refuse_second_size(const TomlSection& section) {
   for (const char* key : {"radius_mm", kTargetElements, kPerThread, kPerRank})
     if (section.has(key)) given.push_back(key);
   if (given.size() > 1)
-    section.fail(section.place(given.back()),
-                 fmt::format("{} exclude each other", fmt::join(given, " and ")));
+    section.fail(given.back(), fmt::format("{} exclude each other", fmt::join(given, " and ")));
 }
 
 void refuse_options_of_podm(const TomlSection& section, const Json& options) {
   if (options.value(kMesher, kPodm) == kPodm) return;
   for (const auto& [key, value] : options.items())
-    if (!is_among(kCommonOptions, key))
-      section.fail(section.place(key), fmt::format("{} is an option of podm only", key));
+    if (!is_among(kCommonOptions, key)) section.fail(key, fmt::format("{} is an option of podm only", key));
 }
 
 void refuse_options_of_meshers(const TomlSection& section, const Json& options) {
   if (!options.contains(kMeasure)) return;
   for (const MesherOption& option : mesher_options())
     if (option.kind != Kind::kMeasure && section.has(option.key))
-      section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
+      section.fail(option.key, fmt::format("{} is an option of meshers", option.key));
 }
 
 // Each copy is bound to one processor, and the kernel counts all copies together. Copies therefore exclude
 // several threads, pinning and counters.
 void refuse_options_excluded_by_copies(const TomlSection& section, const Json& options) {
   if (!options.contains(kCopies)) return;
-  if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");
+  if (options["threads"] != 1) section.fail(kCopies, "copies need threads = 1");
   for (const char* key : {"pin", kCounters})
-    if (options.contains(key))
-      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
+    if (options.contains(key)) section.fail(key, fmt::format("{} and {} exclude each other", kCopies, key));
 }
 
 void refuse_options_excluded_by_ranks(const TomlSection& section, const Json& options) {
   const auto need = [&](const char* key, const char* needed, bool is_there) {
-    if (options.contains(key) && !is_there)
-      section.fail(section.place(key), fmt::format("{} needs {}", key, needed));
+    if (options.contains(key) && !is_there) section.fail(key, fmt::format("{} needs {}", key, needed));
   };
   need(kRanks, kCarrier, options.contains(kCarrier));
   need(kCarrier, kRanks, options.contains(kRanks));
@@ -274,15 +262,14 @@ void refuse_options_excluded_by_ranks(const TomlSection& section, const Json& op
   for (const MesherOption& option : mesher_options())
     if (options.contains(option.key) &&
         (is_among(kSingleProcessOptions, option.key) || !option.not_on_ranks.empty()))
-      section.fail(section.place(option.key),
-                   fmt::format("{} and {} exclude each other", kRanks, option.key));
+      section.fail(option.key, fmt::format("{} and {} exclude each other", kRanks, option.key));
 }
 
 void scale_by(const char* key, const char* number, const TomlSection& section, Json& options) {
   if (!options.contains(key)) return;
   const std::int64_t elements = options[key].get<std::int64_t>() * options[number].get<std::int64_t>();
   if (elements > kMaxElements)
-    section.fail(section.place(key), fmt::format("{} elements in all, more than {}", elements, kMaxElements));
+    section.fail(key, fmt::format("{} elements in all, more than {}", elements, kMaxElements));
   options.erase(key);
   options[kTargetElements] = elements;
 }

@@ -10,25 +10,27 @@
 //     }
 //   };
 //
-// A struct with a member `Json as_written` reads a part of an object that another program wrote. It keeps the
-// whole object: keys that are not fields are written again unchanged and in their places.
+// A struct with a member `JsonPointer as_written` reads a part of an object that another program wrote. It
+// keeps the whole object: keys that are not fields are written again unchanged and in their places.
+//
+// rows/codec.h writes and reads the structs. This header declares them without the definition of Json, which
+// is long: few of the sources that use rows read or write JSON.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <array>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace podm::bench {
 
 using Json = nlohmann::ordered_json;
+/// JSON as a program wrote it. Copies share it. Null: there is none.
+using JsonPointer = std::shared_ptr<const Json>;
 
 /// A fault in an object and its place: "process/wall_s: must be a number".
 class FieldError : public std::runtime_error {
@@ -83,6 +85,10 @@ template <class Struct, class Member>
 constexpr auto field_if_any(const char* key, std::optional<Member> Struct::*member) {
   return Field<Struct, std::optional<Member>>{key, member, true};
 }
+template <class Struct>
+constexpr auto field_if_any(const char* key, JsonPointer Struct::*member) {
+  return Field<Struct, JsonPointer>{key, member, true};
+}
 
 template <class T>
 concept HasFields = requires {
@@ -112,226 +118,5 @@ std::string to_string(E value) {
 /// Writes and reads values of a type. read() throws FieldError that names the place.
 template <class T>
 struct Codec;
-
-template <class T>
-Json to_json(const T& value) {
-  return Codec<T>::write(value);
-}
-template <class T>
-T from_json(const Json& json, const std::string& place = "") {
-  return Codec<T>::read(json, place);
-}
-
-[[noreturn]] inline void fail_at(const std::string& place, const std::string& fault) {
-  throw FieldError(place.empty() ? fault : fmt::format("{}: {}", place, fault));
-}
-inline std::string place_in(const std::string& place, const std::string& key) {
-  return place.empty() ? key : fmt::format("{}/{}", place, key);
-}
-
-/// Sets the keys of `fields` in an object. Values that are equal already stay as they were written.
-template <class T, class Fields>
-void write_fields(const T& value, const Fields& fields, Json& into);
-/// Sets the members of `fields`.
-template <class T, class Fields>
-void read_fields(const Json& json, const std::string& place, const Fields& fields, T& value);
-
-template <>
-struct Codec<Json> {
-  static Json write(const Json& value) { return value; }
-  static Json read(const Json& json, const std::string&) { return json; }
-};
-
-template <>
-struct Codec<std::string> {
-  static Json write(const std::string& value) { return value; }
-  static std::string read(const Json& json, const std::string& place) {
-    if (!json.is_string()) fail_at(place, "must be a string");
-    return json.get<std::string>();
-  }
-};
-
-template <>
-struct Codec<bool> {
-  static Json write(bool value) { return value; }
-  static bool read(const Json& json, const std::string& place) {
-    if (!json.is_boolean()) fail_at(place, "must be true or false");
-    return json.get<bool>();
-  }
-};
-
-template <>
-struct Codec<double> {
-  static Json write(double value) { return value; }
-  static double read(const Json& json, const std::string& place) {
-    if (!json.is_number()) fail_at(place, "must be a number");
-    return json.get<double>();
-  }
-};
-
-template <>
-struct Codec<int> {
-  static Json write(int value) { return value; }
-  static int read(const Json& json, const std::string& place) {
-    if (!json.is_number_integer()) fail_at(place, "must be an integer");
-    return json.get<int>();
-  }
-};
-
-template <>
-struct Codec<std::uint64_t> {
-  static Json write(std::uint64_t value) { return value; }
-  static std::uint64_t read(const Json& json, const std::string& place) {
-    if (!json.is_number_integer() || (!json.is_number_unsigned() && json.get<std::int64_t>() < 0))
-      fail_at(place, "must be an integer that is not negative");
-    return json.get<std::uint64_t>();
-  }
-};
-
-template <>
-struct Codec<Unavailable> {
-  static Json write(const Unavailable& value) { return value.text(); }
-  static Unavailable read(const Json& json, const std::string& place) {
-    const std::string text = json.is_string() ? json.get<std::string>() : "";
-    if (!text.starts_with(Unavailable::kPrefix)) fail_at(place, "must be \"unavailable: \" and why");
-    return {text.substr(std::string(Unavailable::kPrefix).size())};
-  }
-};
-
-template <HasNames E>
-struct Codec<E> {
-  static Json write(E value) { return to_string(value); }
-  static E read(const Json& json, const std::string& place) {
-    const auto& names = names_of(E{});
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (json == names[i]) return static_cast<E>(i);
-    fail_at(place, fmt::format("must be one of {}", fmt::join(names, ", ")));
-  }
-};
-
-template <class T>
-struct Codec<std::optional<T>> {
-  static Json write(const std::optional<T>& value) { return value ? to_json(*value) : Json(); }
-  static std::optional<T> read(const Json& json, const std::string& place) {
-    return json.is_null() ? std::nullopt : std::optional(from_json<T>(json, place));
-  }
-};
-
-template <class T>
-struct Codec<std::vector<T>> {
-  static Json write(const std::vector<T>& values) {
-    Json json = Json::array();
-    for (const T& value : values) json.push_back(to_json(value));
-    return json;
-  }
-  static std::vector<T> read(const Json& json, const std::string& place) {
-    if (!json.is_array()) fail_at(place, "must be an array");
-    std::vector<T> values;
-    for (const Json& member : json)
-      values.push_back(from_json<T>(member, place_in(place, std::to_string(values.size()))));
-    return values;
-  }
-};
-
-template <class T, std::size_t size>
-struct Codec<std::array<T, size>> {
-  static Json write(const std::array<T, size>& values) {
-    return to_json(std::vector<T>(values.begin(), values.end()));
-  }
-  static std::array<T, size> read(const Json& json, const std::string& place) {
-    const auto members = from_json<std::vector<T>>(json, place);
-    if (members.size() != size) fail_at(place, fmt::format("must have {} members", size));
-    std::array<T, size> values{};
-    std::copy(members.begin(), members.end(), values.begin());
-    return values;
-  }
-};
-
-template <class T>
-struct Codec<ByName<T>> {
-  static Json write(const ByName<T>& values) {
-    Json json = Json::object();
-    for (const auto& [name, value] : values) json[name] = to_json(value);
-    return json;
-  }
-  static ByName<T> read(const Json& json, const std::string& place) {
-    if (!json.is_object()) fail_at(place, "must be an object");
-    ByName<T> values;
-    for (const auto& [name, value] : json.items())
-      values.emplace_back(name, from_json<T>(value, place_in(place, name)));
-    return values;
-  }
-};
-
-/// Reads the first alternative that fits the value.
-template <class... Ts>
-struct Codec<std::variant<Ts...>> {
-  static Json write(const std::variant<Ts...>& value) {
-    return std::visit([](const auto& held) { return to_json(held); }, value);
-  }
-  static std::variant<Ts...> read(const Json& json, const std::string& place) {
-    std::optional<std::variant<Ts...>> value;
-    std::string faults;
-    (try_to_read<Ts>(json, place, value, faults), ...);
-    if (!value) throw FieldError(faults);
-    return *value;
-  }
-
- private:
-  template <class T>
-  static void try_to_read(const Json& json, const std::string& place,
-                          std::optional<std::variant<Ts...>>& value, std::string& faults) {
-    if (value) return;
-    try {
-      value = from_json<T>(json, place);
-    } catch (const FieldError& fault) {
-      faults += (faults.empty() ? "" : ", or ") + std::string(fault.what());
-    }
-  }
-};
-
-template <HasFields T>
-struct Codec<T> {
-  static Json write(const T& value) {
-    Json json = Json::object();
-    if constexpr (CarriesOthers<T>) json = value.as_written;
-    write_fields(value, T::fields(), json);
-    return json;
-  }
-  static T read(const Json& json, const std::string& place) {
-    if (!json.is_object()) fail_at(place, "must be an object");
-    T value{};
-    if constexpr (CarriesOthers<T>) value.as_written = json;
-    read_fields(json, place, T::fields(), value);
-    return value;
-  }
-};
-
-template <class T, class Fields>
-void write_fields(const T& value, const Fields& fields, Json& into) {
-  const auto write = [&](const auto& field) {
-    const Json member = to_json(value.*field.member);
-    const auto known = into.find(field.key);
-    if (known == into.end()) {
-      if (!field.may_be_absent || !member.is_null()) into[field.key] = member;
-    } else if (*known != member) {
-      *known = member;
-    }
-  };
-  std::apply([&](const auto&... each) { (write(each), ...); }, fields);
-}
-
-template <class T, class Fields>
-void read_fields(const Json& json, const std::string& place, const Fields& fields, T& value) {
-  const auto read = [&](const auto& field) {
-    using Member = std::remove_reference_t<decltype(value.*field.member)>;
-    const auto known = json.find(field.key);
-    if (known != json.end())
-      value.*field.member = from_json<Member>(*known, place_in(place, field.key));
-    else if (!field.may_be_absent)
-      fail_at(place, fmt::format("has no key '{}'", field.key));
-  };
-  std::apply([&](const auto&... each) { (read(each), ...); }, fields);
-}
 
 }  // namespace podm::bench

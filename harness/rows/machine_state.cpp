@@ -62,8 +62,8 @@ std::string machine_name(const Row& row) {
 std::string model_of(const Row& row) {
   if (!is_simulated(row)) return "";
   const std::string nodes = fmt::format("{} NUMA nodes", in_words(row.environment.numa_nodes));
-  if (!row.mesh || !row.mesh->virtual_time) return nodes;
-  const Json& record = row.mesh->virtual_time->as_written;
+  if (!row.mesh || !row.mesh->virtual_time || !row.mesh->virtual_time->as_written) return nodes;
+  const Json& record = *row.mesh->virtual_time->as_written;
   const Json::json_pointer place("/machine/sha256");
   return record.contains(place) && record[place].is_string() ? record[place].get<std::string>() : nodes;
 }

@@ -1,6 +1,7 @@
 #include "rows/mesher_record.h"
 
 #include <algorithm>
+#include <array>
 
 namespace podm::bench {
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -28,7 +29,7 @@ using Hops = std::variant<std::vector<std::uint64_t>, Unavailable>;  ///< access
 struct InputOfMesher {
   std::optional<std::string> path, sha256;
   std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using I = InputOfMesher;
     return std::tuple{field_if_any("path", &I::path), field_if_any("sha256", &I::sha256),
@@ -38,7 +39,7 @@ struct InputOfMesher {
 
 struct UsedSizes {
   std::optional<double> radius_mm, size_image_factor, delta_mm;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     return std::tuple{field_if_any("radius_mm", &UsedSizes::radius_mm),
                       field_if_any("size_image_factor", &UsedSizes::size_image_factor),
@@ -48,7 +49,7 @@ struct UsedSizes {
 
 struct ThreadsRecord {
   std::optional<int> asked, used;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     return std::tuple{field_if_any("asked", &ThreadsRecord::asked),
                       field_if_any("used", &ThreadsRecord::used)};
@@ -62,7 +63,7 @@ struct VirtualRecord {
   std::optional<ByName<double>> worker_s;  ///< seconds of all workers during refinement, by cause
   /// Hash of the constants and rules of virtual time; absent in older rows.
   std::optional<std::string> model_sha256;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
                       field_if_any("phases_s", &VirtualRecord::phases_s),
@@ -74,7 +75,7 @@ struct VirtualRecord {
 /// Attempts at operations by outcome.
 struct OutcomesRecord {
   std::optional<std::uint64_t> committed, lock_conflict, out_of_leaf;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using O = OutcomesRecord;
     return std::tuple{field_if_any("committed", &O::committed),
@@ -86,7 +87,7 @@ struct OutcomesRecord {
 /// Seconds lost by all workers together, by cause.
 struct OverheadRecord {
   std::optional<double> contention, begging, rollback;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using O = OverheadRecord;
     return std::tuple{field_if_any("contention", &O::contention), field_if_any("begging", &O::begging),
@@ -98,7 +99,7 @@ struct OverheadRecord {
 struct WorkRecord {
   std::optional<ByName<std::uint64_t>> insertions;  ///< by rule
   std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using W = WorkRecord;
     return std::tuple{field_if_any("insertions", &W::insertions),
@@ -123,7 +124,7 @@ struct SpentRecord {
 struct RankRecord {
   std::uint64_t cells = 0;
   ByName<SpentRecord> spent;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     return std::tuple{field("cells", &RankRecord::cells), field("spent", &RankRecord::spent)};
   }
@@ -132,7 +133,7 @@ struct RankRecord {
 /// A round of all ranks.
 struct RoundRecord {
   std::uint64_t deferred = 0;  ///< cells
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() { return std::tuple{field("deferred", &RoundRecord::deferred)}; }
 };
 
@@ -142,7 +143,7 @@ struct RanksRecord {
   double imbalance = 1;  ///< largest number of cells of a rank over the mean
   std::vector<RoundRecord> rounds;
   std::vector<RankRecord> by_rank;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using R = RanksRecord;
     return std::tuple{field("number", &R::number), field("imbalance", &R::imbalance),
@@ -213,7 +214,8 @@ struct TopologyRecord {
   }
 };
 
-/// The claims that podm-verify checks for a mesh, and the options with their bounds.
+/// The inputs of podm-verify beside the mesh and the image: claims, and options with their
+/// bounds.
 struct JudgingRecord {
   std::vector<std::string> claims, options;
   static constexpr auto fields() {
@@ -227,7 +229,7 @@ struct MeshRecord {
   std::optional<InputOfMesher> input;  ///< a row has its own member instead
   std::optional<std::string> mesh;     ///< file of a peer's mesh
   std::optional<std::string> algorithm;
-  std::optional<Json> options;  ///< the requested options, by the mesher's own keys
+  JsonPointer options;  ///< the requested options, by the mesher's own keys
   std::optional<UsedSizes> used;
   std::optional<JudgingRecord> verify;  ///< rows of before November 2026 have none
   std::optional<std::uint64_t> seed;
@@ -255,7 +257,7 @@ struct MeshRecord {
   std::optional<TopologyRecord> topology;            ///< unset if podm-verify had no image
   std::optional<std::vector<std::string>> promises;  ///< promised claims; unset: all
   std::string stop_reason;
-  Json as_written = Json::object();
+  JsonPointer as_written;
   static constexpr auto fields() {
     using M = MeshRecord;
     return std::tuple{field_if_any("schema", &M::schema),

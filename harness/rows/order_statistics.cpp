@@ -5,8 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "rows/statistics.h"
-
 namespace podm::bench {
 namespace {
 
@@ -37,6 +35,13 @@ double deviation_of(const std::vector<double>& samples) {
 }
 
 }  // namespace
+
+double median(std::vector<double> samples) {
+  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+  std::nth_element(samples.begin(), middle, samples.end());
+  if (samples.size() % 2 == 1) return *middle;
+  return (*std::max_element(samples.begin(), middle) + *middle) / 2;
+}
 
 Interval median_interval(std::vector<double> samples, double confidence) {
   std::sort(samples.begin(), samples.end());

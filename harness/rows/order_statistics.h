@@ -6,6 +6,9 @@
 
 namespace podm::bench {
 
+/// Returns the median of at least one sample; for an even number, the mean of the middle two.
+double median(std::vector<double> samples);
+
 /// The coverage that an interval needs to decide a claim.
 inline constexpr double kConfidence = 0.95;
 

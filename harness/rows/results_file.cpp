@@ -12,6 +12,8 @@
 #include <fstream>
 #include <map>
 
+#include "rows/codec.h"
+
 namespace podm::bench {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rows/codec.h"
+
 namespace podm::bench {
 namespace {
 
@@ -28,9 +30,16 @@ double as_double(const Number& number) {
   return std::visit([](auto value) { return static_cast<double>(value); }, number);
 }
 
+const Json& asked_of(const Row& row) {
+  static const Json kNothing = Json::object();
+  return row.asked ? *row.asked : kNothing;
+}
+
 std::string Replay::text() const {
   return end == End::kEqual ? kEqual : end == End::kDiffers ? kDiffers : kReplayFailed + why;
 }
+
+Json Codec<Replay>::write(const Replay& replay) { return replay.text(); }
 
 Replay Codec<Replay>::read(const Json& json, const std::string& place) {
   const auto text = from_json<std::string>(json, place);

@@ -98,7 +98,7 @@ struct Replay {
 };
 template <>
 struct Codec<Replay> {
-  static Json write(const Replay& replay) { return replay.text(); }
+  static Json write(const Replay& replay);
   static Replay read(const Json& json, const std::string& place);
 };
 
@@ -274,8 +274,8 @@ struct Row {
   bool warmup = false;
   std::uint64_t order_seed = 0;  ///< seed of the schedule
   Status status = Status::kFailed;
-  std::string reason;           ///< the reason of a status that is not kOk
-  Json asked = Json::object();  ///< the trial's options by the keys of experiments/*.toml
+  std::string reason;  ///< the reason of a status that is not kOk
+  JsonPointer asked;   ///< the trial's options by the keys of experiments/*.toml
   Basis basis = Basis::kMeasured;
   std::vector<std::string> command;  ///< the arguments of the process
   std::optional<ResolvedRadius> resolved;
@@ -321,6 +321,8 @@ struct Row {
                       field("environment", &Row::environment)};
   }
 };
+/// Returns `asked`; an empty object if the row has none.
+const Json& asked_of(const Row& row);
 /// True if a row has a mesh, whether it met its guarantees or not.
 inline bool is_finished(const Row& row) { return row.status == Status::kOk || row.status == Status::kUnmet; }
 

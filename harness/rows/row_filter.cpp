@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {
@@ -22,8 +22,8 @@ std::string text_of(const Json& value) {
 
 // Returns the program that made the row: this program, podm, podm on ranks or a peer.
 std::string maker_of(const Row& row) {
-  if (row.asked.contains(kRanks)) return kRanks;
-  return row.asked.contains(kMeasure) ? kMeasure : row.asked.value(kMesher, kPodm);
+  if (asked_of(row).contains(kRanks)) return kRanks;
+  return asked_of(row).contains(kMeasure) ? kMeasure : asked_of(row).value(kMesher, kPodm);
 }
 
 // Returns the hash that rows of one maker share: that of the mesher, if a mesh is made.
@@ -37,7 +37,7 @@ std::string program_of(const Row& row) {
 }
 
 // Returns the described machine as the experiment's file names it; "" if there is none.
-std::string described_machine_of(const Row& row) { return row.asked.value("topology", ""); }
+std::string described_machine_of(const Row& row) { return asked_of(row).value("topology", ""); }
 
 const Row* newest_measured(const std::vector<Row>& rows) {
   const auto found = std::find_if_not(rows.rbegin(), rows.rend(), is_simulated);
@@ -84,7 +84,7 @@ Json complete_options(Json asked) {
 }
 
 Json options_of(const Row& row) {
-  Json options = complete_options(row.asked);
+  Json options = complete_options(asked_of(row));
   options[kInput] = row.input.name;
   return options;
 }

@@ -1,6 +1,7 @@
 // Selects the rows of an experiment that a claim is about, by the options of their trials.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <map>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {
@@ -54,7 +54,7 @@ std::map<int, double> by_round(const Samples& samples) {
 // has both.
 Samples sample_growth(const RowPointers& rows, const Measure& measure) {
   std::map<double, RowPointers> by_size;
-  for (const Row* row : rows) by_size[row->asked.value(kTargetElements, 0.0)].push_back(row);
+  for (const Row* row : rows) by_size[asked_of(*row).value(kTargetElements, 0.0)].push_back(row);
   if (by_size.size() < 2) return absent("needs two target_elements, has one", rows);
   const RowPointers &smallest = by_size.begin()->second, &largest = by_size.rbegin()->second;
   const Samples counts[2] = {read_each(smallest, measure, measure.read),

@@ -9,7 +9,6 @@
 #include "rows/measure.h"
 #include "rows/order_statistics.h"
 #include "rows/row_filter.h"
-#include "rows/statistics.h"
 
 namespace podm::bench {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "rows/statistics.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {

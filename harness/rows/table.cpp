@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "rows/measure.h"
-#include "rows/statistics.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {

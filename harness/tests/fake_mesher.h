@@ -1,43 +1,14 @@
-// Temporary folders, and shell scripts that stand in for the mesher.
+// Shell scripts that stand in for the mesher and its verifier.
 #pragma once
 
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "tests/temporary_folder.h"
 #include "trials/preparation.h"
 
 namespace podm::bench {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(testing::TempDir() + "podm_harness_XXXXXX") {
-    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("cannot make " + path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-  const std::string& path() const { return path_; }
-
-  /// Writes a file and returns its path.
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(*this / name) << text;
-    return *this / name;
-  }
-  /// Writes an executable shell script and returns its path.
-  std::string script(const std::string& name, const std::string& body) const {
-    const std::string path = write(name, "#!/bin/sh\n" + body);
-    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
-    return path;
-  }
-
- private:
-  std::string path_;
-};
 
 /// A claim for experiments that test something else. It comes last in the file.
 inline const std::string kClaim = R"(
@@ -49,6 +20,22 @@ kind = "share"
 value = "passed"
 at_least = 1.0
 )";
+
+/// An experiment on one image whose trial "some" has options and `repeats` rounds. `lines` are the options
+/// and what follows the trial.
+inline std::string experiment_of(int repeats, const std::string& image, const std::string& lines) {
+  return fmt::format(R"(title = "Title"
+claim = "Headline"
+paper = "Table 7"
+repeats = {}
+[inputs.a]
+image = "{}"
+[[trials]]
+name = "some"
+input = "a"
+{})",
+                     repeats, image, lines);
+}
 
 /// The record of a healthy mesher: meshing takes 2 s, refinement makes `cells` cells per second, writing
 /// takes 5 s.

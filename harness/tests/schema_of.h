@@ -2,12 +2,15 @@
 // nullability. Ranges and patterns of the committed schema are not compared.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "rows/fields.h"
+#include "rows/row.h"
 
 namespace podm::bench {
 
@@ -46,7 +49,7 @@ inline Shape plain(const char* type) {
 }
 
 template <>
-struct ShapeOf<Json> {
+struct ShapeOf<JsonPointer> {
   static Shape get() { return {}; }
 };
 template <>

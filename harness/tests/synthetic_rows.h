@@ -1,6 +1,8 @@
 // Rows in the form that podm-bench writes, with synthetic numbers of a test.
 #pragma once
 
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,13 @@
 #include "trials/record.h"
 
 namespace podm::bench {
+
+/// Sets an option of the row's trial.
+inline void ask(Row& row, const std::string& key, const Json& value) {
+  Json asked = asked_of(row);
+  asked[key] = value;
+  row.asked = std::make_shared<const Json>(std::move(asked));
+}
 
 /// A row of status ok on a machine of two sockets of eight cores. `asked` decides whether it is simulated.
 inline Row synthetic_row(const std::string& trial, const Json& asked, int repeat = 1) {
@@ -18,9 +27,9 @@ inline Row synthetic_row(const std::string& trial, const Json& asked, int repeat
   row.trial = trial;
   row.repeat = repeat;
   row.status = Status::kOk;
-  row.asked = asked.is_null() ? Json::object() : asked;
-  if (!row.asked.contains("threads")) row.asked["threads"] = 1;
-  row.basis = basis_of(row.asked, {});
+  row.asked = std::make_shared<const Json>(asked.is_object() ? asked : Json::object());
+  if (!row.asked->contains("threads")) ask(row, "threads", 1);
+  row.basis = basis_of(*row.asked, {});
   row.command = {"podm", "mesh", "image.nii"};
   row.input.name = "image";
   row.input.path = "image.nii";
@@ -75,7 +84,7 @@ inline std::vector<Row> in_six_rounds(const std::vector<Row>& rows) {
 /// Reads a claim from the lines of its table. Its experiment has trials 10M, 1M and 0.1M, measured and
 /// virtual, with every option that these tests name.
 inline Claim read_claim_of(const std::string& lines) {
-  const toml::table table = toml::parse("name = 'c'\nstatement = 's'\n" + lines);
+  const TomlValue table = parse_toml_text("name = 'c'\nstatement = 's'\n" + lines, "claim.toml");
   std::vector<ClaimedTrial> trials;
   for (const char* stem : {"10M", "1M", "0.1M"}) {
     for (const char* contention : {"aggressive", "random", "local"})
@@ -88,7 +97,7 @@ inline Claim read_claim_of(const std::string& lines) {
           {stem, complete_options({{"leaf_size", size}, {"threads", 1}, {"target_elements", 5}})});
     trials.push_back({stem, complete_options({{"mesher", "other"}, {"threads", 1}})});
   }
-  TomlSection section("claim.toml", table, "[[claims]]");
+  TomlSection section(table, "[[claims]]");
   return read_claim(section, trials);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "rows/row.h"
 
 namespace podm::bench {

@@ -1,5 +1,7 @@
 #include "trials/image_info.h"
 
+#include "rows/codec.h"
+
 namespace podm::bench {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 
+#include "rows/codec.h"
 #include "trials/peer.h"
 
 namespace podm::bench {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "errors.h"
 #include "options/option_matrix.h"
 #include "process/ask.h"
 #include "process/sha256.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 
 namespace podm::bench {
 

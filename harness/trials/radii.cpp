@@ -10,6 +10,7 @@
 #include "options/option_matrix.h"
 #include "process/sha256.h"
 #include "process/usable_processors.h"
+#include "rows/codec.h"
 #include "rows/results_file.h"
 #include "trials/input_files.h"
 
@@ -40,17 +41,13 @@ ProcessRequest request_of(const Trial& trial, const std::string& podm, const std
   return request;
 }
 
-// The part of the calibration that is read, from the record of a run that finds a radius.
-struct Calibration {
-  std::vector<Json> meshes;  // those before the last one
-  static constexpr auto fields() { return std::tuple{field("meshes", &Calibration::meshes)}; }
-};
+// The record of a run that finds a radius.
 struct RadiusRecord {
   std::string stop_reason;
   std::uint64_t cells = 0;
   UsedSizes used;
   std::optional<std::string> program;
-  std::optional<Json> calibration, warnings;
+  JsonPointer calibration, warnings;
   static constexpr auto fields() {
     using R = RadiusRecord;
     return std::tuple{field("stop_reason", &R::stop_reason),
@@ -76,12 +73,10 @@ std::optional<RadiusRecord> read_record(const std::string& path) {
 }
 
 // Returns the number of all meshes made, including the last; nothing if the mesher does not report them.
-std::optional<std::uint64_t> num_meshes(const Json& calibration) {
-  try {
-    return from_json<Calibration>(calibration).meshes.size() + 1;
-  } catch (const FieldError&) {
-    return {};
-  }
+std::optional<std::uint64_t> num_meshes(const JsonPointer& calibration) {
+  if (!calibration || !calibration->is_object()) return {};
+  const Json before_last = calibration->value("meshes", Json());
+  return before_last.is_array() ? std::optional(before_last.size() + 1) : std::nullopt;
 }
 
 std::optional<RadiusLine> line_of(const std::string& text) {
@@ -91,11 +86,6 @@ std::optional<RadiusLine> line_of(const std::string& text) {
   } catch (const FieldError&) {
     return {};
   }
-}
-
-ResolvedRadius as_in_rows(const RadiusLine& line) {
-  return {line.target_elements, line.radius_mm, line.delta_mm, line.cells,
-          line.meshes,          line.seconds,   line.key};
 }
 
 std::optional<double> delta_asked(const Trial& trial) {
@@ -123,7 +113,7 @@ std::string Radii::key_of(const Trial& trial, const std::string& image_sha256) c
 std::optional<ResolvedRadius> Radii::find(const Trial& trial, const std::string& image_sha256) const {
   const std::string key = key_of(trial, image_sha256);
   for (const RadiusLine& line : lines_)
-    if (line.key == key) return as_in_rows(line);
+    if (line.key == key) return line;
   return {};
 }
 
@@ -135,23 +125,18 @@ ResolvedRadius Radii::resolve(const Trial& trial, const std::string& image, cons
   if (outcome.end != ProcessOutcome::End::kExited || !record)
     throw PreparationError(fmt::format("no radius for {} cells", trial.options[kTargetElements].dump()),
                            request.arguments, outcome, read_tail(request.stderr_path, kTailBytes));
-  const Json calibration = record->calibration.value_or(Json());
-  store({.schema = kSchema,
-         .key = key_of(trial, image_sha256),
-         .input = {trial.image, image, image_sha256},
-         .target_elements = trial.options[kTargetElements],
-         .delta_asked_mm = delta_asked(trial),
-         .radius_mm = *record->used.radius_mm,
-         .delta_mm = *record->used.delta_mm,
-         .cells = record->cells,
-         .meshes = num_meshes(calibration),
-         .seconds = outcome.wall_s,
-         .calibration = calibration,
-         .warnings = record->warnings.value_or(Json::array()),
-         .command = request.arguments,
-         .mesher = {podm_sha256_, record->program.value_or("")},
-         .date = now()});
-  return as_in_rows(lines_.back());
+  const auto no_warnings = std::make_shared<const Json>(Json::array());
+  store({{trial.options[kTargetElements], *record->used.radius_mm, *record->used.delta_mm, record->cells,
+          num_meshes(record->calibration), outcome.wall_s, key_of(trial, image_sha256)},
+         kSchema,
+         {trial.image, image, image_sha256},
+         delta_asked(trial),
+         record->calibration,
+         record->warnings ? record->warnings : no_warnings,
+         request.arguments,
+         {podm_sha256_, record->program.value_or(""), {}},
+         now()});
+  return lines_.back();
 }
 
 // Writes the whole file at once. A crash then leaves no partial line.

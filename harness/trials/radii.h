@@ -12,14 +12,6 @@
 
 namespace podm::bench {
 
-/// The mesher that made a mesh.
-struct MesherIdentity {
-  std::string sha256, version;
-  static constexpr auto fields() {
-    return std::tuple{field("sha256", &MesherIdentity::sha256), field("version", &MesherIdentity::version)};
-  }
-};
-
 struct ImageIdentity {
   std::string name, path, sha256;
   static constexpr auto fields() {
@@ -29,36 +21,21 @@ struct ImageIdentity {
 };
 
 /// A line of radii.jsonl: a radius and its evidence, results/README.md.
-struct RadiusLine {
-  std::string schema, key;
+struct RadiusLine : ResolvedRadius {
+  std::string schema;
   ImageIdentity input;
-  std::uint64_t target_elements = 0;
   std::optional<double> delta_asked_mm;
-  double radius_mm = 0, delta_mm = 0;
-  std::uint64_t cells = 0;              ///< cells of the mesh that is the evidence
-  std::optional<std::uint64_t> meshes;  ///< number of meshes made to find it
-  double seconds = 0;                   ///< time spent to find it
-  Json calibration, warnings;           ///< as the mesher wrote them
+  JsonPointer calibration, warnings;  ///< as the mesher wrote them
   std::vector<std::string> command;
-  MesherIdentity mesher;
-  std::string date;  ///< UTC, in the format of ISO 8601
+  ProgramRecord mesher;  ///< without the build
+  std::string date;      ///< UTC, in the format of ISO 8601
   static constexpr auto fields() {
     using R = RadiusLine;
-    return std::tuple{field("schema", &R::schema),
-                      field("key", &R::key),
-                      field("input", &R::input),
-                      field("target_elements", &R::target_elements),
-                      field("delta_asked_mm", &R::delta_asked_mm),
-                      field("radius_mm", &R::radius_mm),
-                      field("delta_mm", &R::delta_mm),
-                      field("cells", &R::cells),
-                      field("meshes", &R::meshes),
-                      field("seconds", &R::seconds),
-                      field("calibration", &R::calibration),
-                      field("warnings", &R::warnings),
-                      field("command", &R::command),
-                      field("mesher", &R::mesher),
-                      field("date", &R::date)};
+    return std::tuple_cat(
+        std::tuple{field("schema", &R::schema), field("input", &R::input)}, ResolvedRadius::fields(),
+        std::tuple{field("delta_asked_mm", &R::delta_asked_mm), field("calibration", &R::calibration),
+                   field("warnings", &R::warnings), field("command", &R::command),
+                   field("mesher", &R::mesher), field("date", &R::date)});
   }
 };
 

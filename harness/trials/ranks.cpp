@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "process/programs.h"
 
 namespace podm::bench {

@@ -1,6 +1,6 @@
 #include "trials/record.h"
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "trials/counter_tool.h"
 #include "trials/ranks.h"
 
@@ -67,7 +67,7 @@ Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, co
   row.order_seed = context.order_seed;
   row.status = result.status;
   row.reason = result.reason;
-  row.asked = trial.options;
+  row.asked = std::make_shared<const Json>(trial.options);
   row.basis = basis_of(trial.options, result.counters);
   row.command = result.command;
   row.resolved = result.preparation.resolved;

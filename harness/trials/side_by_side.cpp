@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "machine/machine.h"
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "process/usable_processors.h"
 #include "trials/judgement.h"
 

@@ -1,6 +1,7 @@
 #include "trials/solving.h"
 
 #include "process/ask.h"
+#include "rows/codec.h"
 #include "trials/verification.h"
 
 namespace podm::bench {

@@ -1,8 +1,9 @@
 #include "trials/trial_key.h"
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "process/programs.h"
 #include "process/sha256.h"
+#include "rows/codec.h"
 #include "trials/counter_tool.h"
 #include "trials/ranks.h"
 #include "trials/record.h"

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "process/ask.h"
+#include "rows/codec.h"
 
 namespace podm::bench {
 namespace {

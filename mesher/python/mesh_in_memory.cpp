@@ -1,6 +1,7 @@
 #include "python/mesh_in_memory.h"
 
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "algorithms/team_size.h"

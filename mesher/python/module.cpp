@@ -9,6 +9,7 @@
 #include <climits>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "algorithms/team_size.h"

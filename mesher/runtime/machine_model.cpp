@@ -24,7 +24,7 @@ constexpr double kLeast = 1e-9;  // for values that must be positive
 
 std::vector<std::string> read_sources(TomlSection& file) {
   std::vector<std::string> sources;
-  for (const toml::node* node : file.values("sources")) sources.push_back(file.text_of(*node, "sources"));
+  for (const TomlValue& source : file.values("sources")) sources.push_back(source.text());
   return sources;
 }
 
@@ -45,7 +45,7 @@ void read_cache(TomlSection& section, Processors& processors) {
   if (caches.size() == 1) return;
   const MachineModel::Cache &inner = *(caches.end() - 2), &outer = caches.back();
   if (outer.level <= inner.level || outer.latency_s <= inner.latency_s)
-    section.fail(section.place(), "caches must be listed from the fastest to the slowest, by level");
+    section.fail("caches must be listed from the fastest to the slowest, by level");
 }
 
 Processors read_processors(TomlSection section) {
@@ -67,8 +67,8 @@ struct Network {
 };
 
 // Returns the vertex of "node 3" or "router 1".
-int link_end(const TomlSection& section, const toml::node& node, const Network& network) {
-  const std::string text = section.text_of(node, "an end of a link");
+int link_end(const TomlValue& value, const Network& network) {
+  const std::string text = value.text();
   const bool is_router = text.starts_with("router ");
   const std::string_view digits =
       std::string_view(text).substr(std::min(text.find(' '), text.size() - 1) + 1);
@@ -77,22 +77,22 @@ int link_end(const TomlSection& section, const toml::node& node, const Network& 
   const int most = is_router ? network.num_routers : network.num_nodes;
   if ((!is_router && !text.starts_with("node ")) || error != std::errc() ||
       end != digits.data() + digits.size() || number < 0 || number >= most)
-    section.fail(node.source(),
-                 fmt::format("\"{}\" is not one of the {} nodes and {} routers, which are \"node "
-                             "0\", ... and \"router 0\", ...",
-                             text, network.num_nodes, network.num_routers));
+    value.fail(
+        fmt::format("\"{}\" is none of the {} nodes and {} routers, which are \"node "
+                    "0\", ... and \"router 0\", ...",
+                    text, network.num_nodes, network.num_routers));
   return is_router ? network.num_nodes + number : number;
 }
 
-void read_link(const TomlSection& section, const toml::node& node, Network& network) {
-  const toml::array* ends = node.as_array();
-  if (ends == nullptr || ends->size() != 2)
-    section.fail(node.source(), "a link is a pair such as [\"node 0\", \"router 0\"]");
-  const int a = link_end(section, *ends->get(0), network), b = link_end(section, *ends->get(1), network);
-  if (a == b) section.fail(node.source(), "a link connects an end to itself");
+void read_link(const TomlValue& link, Network& network) {
+  const auto* const ends = link.as<TomlValue::Array>();
+  if (ends == nullptr || ends->members.size() != 2)
+    link.fail("a link is a pair such as [\"node 0\", \"router 0\"]");
+  const int a = link_end(ends->members[0], network), b = link_end(ends->members[1], network);
+  if (a == b) link.fail("a link leads from an end to itself");
   std::vector<int>& others = network.neighbours[a];
   if (std::find(others.begin(), others.end(), b) != others.end())
-    section.fail(node.source(), "a second link between these ends");
+    link.fail("a second link between these ends");
   others.push_back(b);
   network.neighbours[b].push_back(a);
 }
@@ -106,8 +106,8 @@ void refuse_unconnected(const TomlSection& section, const Network& network) {
   const std::vector<int> links = links_from(network.neighbours, 0);
   const auto apart = std::find(links.begin(), links.end(), -1);
   if (apart != links.end())
-    section.fail(section.place(), fmt::format("{} is not connected to node 0",
-                                              name_of(network, static_cast<int>(apart - links.begin()))));
+    section.fail(fmt::format("no links lead from node 0 to {}",
+                             name_of(network, static_cast<int>(apart - links.begin()))));
 }
 
 double read_service_s(TomlSection& section, std::string_view key) {
@@ -119,7 +119,7 @@ Network read_network(TomlSection section) {
   network.num_nodes = static_cast<int>(section.count("nodes", 1, 1, kMostNodes));
   network.num_routers = static_cast<int>(section.count("routers", 0, 0, kMostRouters));
   network.neighbours.assign(network.num_nodes + network.num_routers, {});
-  for (const toml::node* node : section.values("links")) read_link(section, *node, network);
+  for (const TomlValue& link : section.values("links")) read_link(link, network);
   refuse_unconnected(section, network);
   network.hub_service_s = read_service_s(section, "hub_accesses_per_s");
   network.router_service_s = read_service_s(section, "router_accesses_per_s");
@@ -146,7 +146,7 @@ Memory read_memory(TomlSection section, const Processors& processors, int num_no
   memory.gib_per_node = section.number("gib_per_node", kLeast, kMostGib);
   memory.local_latency_s = section.number("local_cycles", kLeast, kMostCycles) / processors.clock_hz;
   if (!processors.caches.empty() && memory.local_latency_s <= processors.caches.back().latency_s)
-    section.fail(section.place("local_cycles"), "memory is slower than any cache");
+    section.fail("local_cycles", "memory is slower than any cache");
   if (!is_alone || section.has("cycles_per_hop"))
     memory.hop_latency_s = section.number("cycles_per_hop", kLeast, kMostCycles) / processors.clock_hz;
   if (!is_alone || section.has("miss_share")) memory.miss_share = section.number("miss_share", 0, 1);
@@ -171,8 +171,8 @@ Topology topology_of(const Processors& processors, const Memory& memory, int num
 }  // namespace
 
 MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
-  const toml::table table = parse_ascii_toml(path.string());
-  TomlSection file(path.string(), table, "a machine");
+  const TomlValue table = parse_ascii_toml(path.string());
+  TomlSection file(table, "a machine");
   const std::string name = file.text("name");
   const std::vector<std::string> sources = read_sources(file);
   const Processors processors = read_processors(file.table("processor"));
@@ -184,7 +184,7 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
   system.done();
   file.done();
   if (network.num_nodes * processors.sockets * processors.cores_per_socket > kMostProcessors)
-    file.fail(file.place(), fmt::format("a machine of more than {} cores", kMostProcessors));
+    file.fail(fmt::format("a machine of more than {} cores", kMostProcessors));
   const std::vector<std::vector<int>> routes = shortest_paths(network.neighbours, network.num_nodes);
   return {.name = name,
           .sources = sources,

@@ -1,14 +1,15 @@
 // A table of a TOML file, read key by key. An unexpected or invalid entry is refused with its place.
 #pragma once
 
-#include <toml++/toml.h>
-
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace podm {
@@ -19,73 +20,125 @@ class TomlError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws TomlError if the file does not exist or is not valid TOML.
-toml::table parse_toml(const std::string& path);
-/// Also refuses non-ASCII characters: in keys they lead toml++ 3.3 into undefined behaviour.
-toml::table parse_ascii_toml(const std::string& path);
+/// A value of a TOML file. Every member function throws TomlError if the value is not as requested.
+struct TomlValue {
+  struct Array {
+    std::vector<TomlValue> members;
+  };
+  struct Table {
+    std::vector<TomlValue> entries;  ///< in the order of the file
+  };
 
-/// Every member throws TomlError "file:line:column: fault". The table must outlive the section.
+  struct Place {
+    int line = 0, column = 0;
+    auto operator<=>(const Place&) const = default;
+  };
+
+  std::string path;  ///< of the file
+  std::string key;   ///< a member of an array has the key of the array
+  Place key_place, place;
+  /// A date or a time is a std::monostate.
+  std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table> content;
+
+  /// Returns null if the value has another type.
+  template <class Type>
+  const Type* as() const {
+    return std::get_if<Type>(&content);
+  }
+  /// Returns "file:line:column".
+  std::string where(Place at) const;
+  [[noreturn]] void fail(const std::string& fault) const;
+
+  /// The text must not be empty.
+  std::string text() const;
+  bool flag() const;
+  /// A number may be an integer and must be finite.
+  double number() const;
+  double number(double least, double most) const;
+  double positive() const;
+  std::int64_t count(std::int64_t least, std::int64_t most) const;
+};
+
+/// Returns the file's table. Throws TomlError if the file does not exist or is not valid TOML.
+TomlValue parse_toml(const std::string& path);
+/// Also refuses non-ASCII characters: in keys they lead toml++ 3.3 into undefined behaviour.
+TomlValue parse_ascii_toml(const std::string& path);
+/// Parses the text of the file `path`.
+TomlValue parse_toml_text(const std::string& text, const std::string& path);
+
+/// Every member throws TomlError "file:line:column: fault". The table must outlive the section. The
+/// constructor throws if the value is no table.
 class TomlSection {
  public:
-  TomlSection(std::string path, const toml::table& table, std::string name)
-      : path_(std::move(path)), table_(&table), name_(std::move(name)) {}
+  TomlSection(const TomlValue& table, std::string name);
 
-  [[noreturn]] void fail(const toml::source_region& place, const std::string& fault) const;
-  const toml::source_region& place() const { return table_->source(); }
-  const toml::source_region& place(std::string_view key) const { return table_->find(key)->second.source(); }
+  /// Reports a fault of the whole table, or of the value at `key` if the table has one.
+  [[noreturn]] void fail(const std::string& fault) const { table_->fail(fault); }
+  [[noreturn]] void fail(std::string_view key, const std::string& fault) const {
+    (has(key) ? get(key) : table_)->fail(fault);
+  }
   /// Returns "file:line:column" of the value at `key`, which must exist.
-  std::string where(std::string_view key) const;
-  bool has(std::string_view key) const { return table_->contains(key); }
-  bool is_array(std::string_view key) const { return has(key) && table_->get(key)->is_array(); }
-  bool is_table(std::string_view key) const { return has(key) && table_->get(key)->is_table(); }
+  std::string where(std::string_view key) const { return get(key)->where(get(key)->place); }
+  bool has(std::string_view key) const { return get(key) != nullptr; }
+  bool is_array(std::string_view key) const { return as<TomlValue::Array>(key) != nullptr; }
+  bool is_table(std::string_view key) const { return as<TomlValue::Table>(key) != nullptr; }
   bool is_text(std::string_view key, std::string_view text) const {
-    return has(key) && table_->get(key)->value<std::string>() == text;
+    const auto* const found = as<std::string>(key);
+    return found != nullptr && *found == text;
   }
 
   /// The text must not be empty. The second function returns `otherwise` if the key is absent.
-  std::string text(std::string_view key);
-  std::string text(std::string_view key, const std::string& otherwise);
-  bool flag(std::string_view key);
-  double positive(std::string_view key, double otherwise);
+  std::string text(std::string_view key) { return required(key).text(); }
+  std::string text(std::string_view key, const std::string& otherwise) {
+    return find(key) == nullptr ? otherwise : text(key);
+  }
+  bool flag(std::string_view key) { return find(key) != nullptr && required(key).flag(); }
+  double positive(std::string_view key, double otherwise) {
+    return find(key) == nullptr ? otherwise : required(key).positive();
+  }
   /// The value must be from `least` to `most`. The second function returns `otherwise` if the key is absent.
-  double number(std::string_view key, double least, double most);
-  double number(std::string_view key, double otherwise, double least, double most);
+  double number(std::string_view key, double least, double most) { return required(key).number(least, most); }
+  double number(std::string_view key, double otherwise, double least, double most) {
+    return find(key) == nullptr ? otherwise : number(key, least, most);
+  }
   /// Returns any number; nothing if the key is absent.
-  std::optional<double> number(std::string_view key);
-  std::int64_t count(std::string_view key, std::int64_t least, std::int64_t most);
-  std::int64_t count(std::string_view key, std::int64_t otherwise, std::int64_t least, std::int64_t most);
+  std::optional<double> number(std::string_view key) {
+    return find(key) == nullptr ? std::nullopt : std::optional(required(key).number());
+  }
+  std::int64_t count(std::string_view key, std::int64_t least, std::int64_t most) {
+    return required(key).count(least, most);
+  }
+  std::int64_t count(std::string_view key, std::int64_t otherwise, std::int64_t least, std::int64_t most) {
+    return find(key) == nullptr ? otherwise : count(key, least, most);
+  }
   /// Returns the members of an array, or the single value; empty if the key is absent. Refuses an empty
   /// array.
-  std::vector<const toml::node*> values(std::string_view key);
+  std::vector<TomlValue> values(std::string_view key);
   /// Returns the table at `key`, which must exist.
-  TomlSection table(std::string_view key);
+  TomlSection table(std::string_view key) { return {required(key), std::string(key)}; }
   /// Returns the table at `key`; an empty one if it is absent.
   TomlSection optional_table(std::string_view key);
   /// Returns the keys in the order of the file; each counts as read.
   std::vector<std::string> keys();
-  /// Returns the tables [key.NAME], by name.
+  /// Returns the tables [key.NAME], in the order of the file.
   std::vector<std::pair<std::string, TomlSection>> tables(std::string_view key);
   /// Returns the tables [[key]], in the order of the file.
   std::vector<TomlSection> table_array(std::string_view key);
   /// Refuses keys that were not read.
   void done() const;
 
-  std::string text_of(const toml::node& node, std::string_view key) const;
-  bool flag_of(const toml::node& node, std::string_view key) const;
-  double number_of(const toml::node& node, std::string_view key) const;
-  double number_of(const toml::node& node, std::string_view key, double least, double most) const;
-  double positive_of(const toml::node& node, std::string_view key) const;
-  std::int64_t count_of(const toml::node& node, std::string_view key, std::int64_t least,
-                        std::int64_t most) const;
-
  private:
-  std::string location(const toml::source_region& place) const;
-  TomlSection member(std::string_view key, std::string_view name, const toml::node& node) const;
-  const toml::node* find(std::string_view key);
-  const toml::node& required(std::string_view key);
+  const TomlValue* get(std::string_view key) const;
+  template <class Type>
+  const Type* as(std::string_view key) const {
+    const TomlValue* const value = get(key);
+    return value == nullptr ? nullptr : value->as<Type>();
+  }
+  const TomlValue* find(std::string_view key);
+  const TomlValue& required(std::string_view key);
 
-  std::string path_;
-  const toml::table* table_;
+  const TomlValue* table_;
+  const std::vector<TomlValue>* entries_;
   std::string name_;
   std::set<std::string, std::less<>> asked_;
 };

@@ -128,7 +128,7 @@ def _worker_seconds(rows, is_counted):
 
 
 def _is_distributing(cause):
-    """True for the causes that the measure `distributing_share` counts (harness/rows/measure.cpp)."""
+    """True for the causes that the measure `distributing_share` counts (harness/rows/measures_of_ranks.cpp)."""
     return cause in ("between_attempts", "locks")
 
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "claims/claims.h"
 #include "claims/tally.h"
@@ -73,8 +74,8 @@ ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, 
       });
   ClaimResult result = result_of("boundary_angles", tally);
   result.method = "interval arithmetic, then rationals";
-  result.details["bound_degrees"] = options.angle_bound_deg;
-  result.details["facets_equal_to_bound"] = tally.num_ties;
+  result.details()["bound_degrees"] = options.angle_bound_deg;
+  result.details()["facets_equal_to_bound"] = tally.num_ties;
   result.reason = fmt::format("{} of {} facets with an angle at or under {} degrees", result.num_violations,
                               result.num_checked, options.angle_bound_deg);
   if (tally.num_checked > 0) result.reason += fmt::format("; smallest {:.6g}", result.histograms[0].minimum);

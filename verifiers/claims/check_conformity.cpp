@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "claims/check_conformity_schedule.h"
@@ -176,7 +177,7 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
   }
   ClaimResult result = result_of("conformity", tally);
   result.method = "equality of coordinates, integers on the leaf grid";
-  result.details = std::move(details);
+  result.details() = std::move(details);
   result.reason = fmt::format("{} violations; {}", result.num_violations, about);
   return result;
 }

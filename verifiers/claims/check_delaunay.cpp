@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "claims/claims.h"
 #include "claims/tally.h"
@@ -168,11 +169,11 @@ ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const O
   both.add(global);
   ClaimResult result = result_of("delaunay", both);
   result.method = "floating-point filter with a proven bound, then the exact side-of-sphere of CGAL's kernel";
-  result.details["local_violations"] = local.num_violations;
-  result.details["global_violations"] = global.num_violations;
-  result.details["cospherical_facets"] = local.num_ties;
-  result.details["cospherical_vertices"] = global.num_ties;
-  result.details["facets_checked"] = local.num_checked;
+  result.details()["local_violations"] = local.num_violations;
+  result.details()["global_violations"] = global.num_violations;
+  result.details()["cospherical_facets"] = local.num_ties;
+  result.details()["cospherical_vertices"] = global.num_ties;
+  result.details()["facets_checked"] = local.num_checked;
   result.reason =
       fmt::format("{} facets not locally Delaunay, {} vertices inside circumballs; {} facets cospherical",
                   local.num_violations, global.num_violations, local.num_ties);

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "claims/claims.h"
 #include "claims/tally.h"
@@ -126,8 +127,8 @@ ClaimResult check_dihedral(const Mesh& mesh, const Options& options) {
   });
   ClaimResult result = result_of("dihedral", tally);
   result.method = "interval arithmetic, then rationals";
-  result.details["least_degrees"] = bounds.least_deg ? nlohmann::json(*bounds.least_deg) : nlohmann::json();
-  result.details["largest_degrees"] =
+  result.details()["least_degrees"] = bounds.least_deg ? nlohmann::json(*bounds.least_deg) : nlohmann::json();
+  result.details()["largest_degrees"] =
       bounds.largest_deg ? nlohmann::json(*bounds.largest_deg) : nlohmann::json();
   result.reason = fmt::format("{} of {} cells with an angle {}; {:.6g} to {:.6g}", result.num_violations,
                               result.num_checked, text_of_angles(bounds), result.histograms[0].minimum,

@@ -36,6 +36,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "claims/check_fidelity_distribution.h"
@@ -98,11 +99,12 @@ class Comparison {
   bool has_both() const { return !facets_.all().empty() && !midpoints_.all().empty(); }
 
   OneWay mesh_to_image(const Bound& largest) const {
-    return joined(facets_.all().size(), [&](std::size_t begin, std::size_t end, OneWay& way) {
-      std::uint32_t hint = kNone;
-      for (std::size_t f = begin; f < end; ++f)
-        measure_facet(static_cast<std::uint32_t>(f), largest, hint, way);
-    });
+    return sum_over_ranges(facets_.all().size(), threads_, OneWay{},
+                           [&](std::size_t begin, std::size_t end, OneWay& way) {
+                             std::uint32_t hint = kNone;
+                             for (std::size_t f = begin; f < end; ++f)
+                               measure_facet(static_cast<std::uint32_t>(f), largest, hint, way);
+                           });
   }
 
   // Returns the distances from the mesh's interface to that of the image before it was smoothed.
@@ -110,24 +112,26 @@ class Comparison {
     const LabelFunction of_voxels = LabelFunction::of_voxels(image_);
     const Midpoints midpoints(image_, frame_, of_voxels);
     const IsosurfaceDistance isosurface(image_, frame_, midpoints, of_voxels);
-    return joined(facets_.all().size(),
-                  [&](std::size_t begin, std::size_t end, OneWay& way) {
-                    std::uint32_t hint = kNone;
-                    for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
-                      facets_.sample(f, [&](const Point& p, double share) {
-                        const auto answer = isosurface.nearest(p, hint);
-                        way.all.add(std::sqrt(answer.squared), voxels_between(p, answer.point),
-                                    share * facets_.area(f));
-                      });
-                  })
+    return sum_over_ranges(facets_.all().size(), threads_, OneWay{},
+                           [&](std::size_t begin, std::size_t end, OneWay& way) {
+                             std::uint32_t hint = kNone;
+                             for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
+                               facets_.sample(f, [&](const Point& p, double share) {
+                                 const auto answer = isosurface.nearest(p, hint);
+                                 way.all.add(std::sqrt(answer.squared), voxels_between(p, answer.point),
+                                             share * facets_.area(f));
+                               });
+                           })
         .all;
   }
 
   OneWay image_to_mesh() const {
-    return joined(midpoints_.all().size(), [&](std::size_t begin, std::size_t end, OneWay& way) {
-      std::uint32_t hint = kNone;
-      for (std::size_t m = begin; m < end; ++m) measure_midpoint(midpoints_.all()[m], hint, way);
-    });
+    return sum_over_ranges(midpoints_.all().size(), threads_, OneWay{},
+                           [&](std::size_t begin, std::size_t end, OneWay& way) {
+                             std::uint32_t hint = kNone;
+                             for (std::size_t m = begin; m < end; ++m)
+                               measure_midpoint(midpoints_.all()[m], hint, way);
+                           });
   }
 
  private:
@@ -142,16 +146,6 @@ class Comparison {
     const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
     return std::hypot(a[4 + i] * a[8 + j] - a[8 + i] * a[4 + j], a[8 + i] * a[j] - a[i] * a[8 + j],
                       a[i] * a[4 + j] - a[4 + i] * a[j]);
-  }
-
-  template <class Body>
-  OneWay joined(std::size_t count, Body body) const {
-    std::vector<OneWay> parts(static_cast<std::size_t>(threads_));
-    parallel_ranges(count, threads_, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-      body(begin, end, parts[thread]);
-    });
-    for (std::size_t t = 1; t < parts.size(); ++t) parts[0].add(parts[t]);
-    return std::move(parts[0]);
   }
 
   double voxels_between(const Point& p, const Point& q) const {
@@ -275,10 +269,8 @@ ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const I
   result.claim = "fidelity";
   result.method =
       "sampled distances; nearest facet by a tree of boxes, nearest isosurface point by bisection";
-  if (mesh.cells.empty() || mesh.cell_labels.size() != mesh.cells.size()) {
-    result.reason = mesh.cells.empty() ? "the mesh has no cells" : "the mesh states no cell labels";
-    return result;
-  }
+  result.reason = lack_of_cell_labels(mesh);
+  if (!result.reason.empty()) return result;
   const Space space = options.space.value_or(mesh.space);
   const Comparison comparison(mesh, adjacency, image, space, num_threads(options.threads));
   if (!comparison.has_both()) {
@@ -297,15 +289,15 @@ ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const I
       to_image.far_facets + (is_near(to_image.all) ? 0 : 1) + (is_near(to_mesh.all) ? 0 : 1);
   result.bad_cells.assign(to_image.too_far.begin(), to_image.too_far.end());
   if (result.num_violations == 0 || to_image.far_facets > 0) result.worst = to_image.worst.worst_first();
-  result.details = {{"space", describe(space)},
-                    {"bound_voxels", bound.voxels},
-                    {"bound_mm", bound.mm},
-                    {"mesh_to_image", to_image.all.to_json()},
-                    {"image_to_mesh", to_mesh.all.to_json()},
-                    {"interface_vertices_to_image", to_image.vertices.to_json()},
-                    {"facets_too_far", to_image.far_facets},
-                    {"labels", labels_table(mesh, to_image, to_mesh)}};
-  auto& furthest = result.details["furthest_from_mesh"] = nlohmann::json::array();
+  result.details() = {{"space", describe(space)},
+                      {"bound_voxels", bound.voxels},
+                      {"bound_mm", bound.mm},
+                      {"mesh_to_image", to_image.all.to_json()},
+                      {"image_to_mesh", to_mesh.all.to_json()},
+                      {"interface_vertices_to_image", to_image.vertices.to_json()},
+                      {"facets_too_far", to_image.far_facets},
+                      {"labels", labels_table(mesh, to_image, to_mesh)}};
+  auto& furthest = result.details()["furthest_from_mesh"] = nlohmann::json::array();
   for (const Witness& witness : to_mesh.worst.worst_first())
     furthest.push_back({{"point", witness.points[0]}, {"label", witness.label}, {"voxels", witness.value}});
   const auto text_of = [](const Distances& distances) {
@@ -316,7 +308,7 @@ ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const I
       fmt::format("mesh to image: {}; image to mesh: {}", text_of(to_image.all), text_of(to_mesh.all));
   if (image.smoothing) {
     const Distances to_voxels = comparison.mesh_to_voxels();
-    result.details["mesh_to_voxels"] = to_voxels.to_json();
+    result.details()["mesh_to_voxels"] = to_voxels.to_json();
     result.reason += fmt::format("; mesh to the image before it was smoothed: {}", text_of(to_voxels));
   }
   result.verdict = verdict_on(result.num_violations);

@@ -24,6 +24,7 @@
 //               centers within the grid) of each label are reported for that, not judged. The first statement
 //               is the promise of meshers of the PODM family; a mesh of another mesher need not keep it.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "claims/check_labels_circumcenter.h"
 #include "claims/check_labels_overlap.h"
@@ -186,9 +187,9 @@ void judge_labels(const Mesh& mesh, const std::map<LabelValue, LabelOverlap>& ov
     ++result.num_violations;
     result.worst.push_back(witness);
   }
-  result.details["labels"] = table;
-  result.details["labels_absent_in_mesh"] = absent;
-  result.details["labels_unknown_to_image"] = unknown;
+  result.details()["labels"] = table;
+  result.details()["labels_absent_in_mesh"] = absent;
+  result.details()["labels_unknown_to_image"] = unknown;
 }
 
 }  // namespace
@@ -197,19 +198,16 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   ClaimResult result;
   result.claim = "labels";
   result.method = "trilinear weights within a derived error bound, then exact rationals";
-  if (mesh.cells.empty() || mesh.cell_labels.size() != mesh.cells.size()) {
-    result.reason = mesh.cells.empty() ? "the mesh has no cells" : "the mesh states no cell labels";
-    return result;
-  }
+  result.reason = lack_of_cell_labels(mesh);
+  if (!result.reason.empty()) return result;
   const int threads = num_threads(options.threads);
   const Space space = options.space.value_or(mesh.space);
   const CellLabels labels(mesh, image, space, options.delta_mm.value_or(0), threads);
-  std::vector<Tally> parts(static_cast<std::size_t>(threads));
-  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    for (std::size_t cell = begin; cell < end; ++cell) labels.check(static_cast<CellId>(cell), parts[thread]);
-  });
-  Tally tally;
-  for (const Tally& part : parts) tally.add(part);
+  const Tally tally = sum_over_ranges(mesh.cells.size(), threads, Tally{},
+                                      [&](std::size_t begin, std::size_t end, Tally& part) {
+                                        for (std::size_t cell = begin; cell < end; ++cell)
+                                          labels.check(static_cast<CellId>(cell), part);
+                                      });
 
   const double voxel_mm3 = labels.frame().voxel_volume_mm3();
   judge_labels(mesh, find_overlaps(mesh, image, labels.points(), voxel_mm3, threads), voxel_mm3, result);
@@ -217,9 +215,9 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   result.num_exact = tally.exact;
   result.num_violations += tally.wrong.size();
   result.bad_cells = tally.wrong;
-  result.details["space"] = describe(space);
-  result.details["within_rounding"] = tally.within_rounding;
-  result.details["within_reach"] = tally.within_reach;
+  result.details()["space"] = describe(space);
+  result.details()["within_rounding"] = tally.within_rounding;
+  result.details()["within_reach"] = tally.within_reach;
   result.reason =
       labels.is_by_centroid()
           ? fmt::format(

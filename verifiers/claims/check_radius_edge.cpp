@@ -7,6 +7,7 @@
 //   Not proved  Anything about dihedral angles: slivers satisfy the bound. The histogram of dihedral angles
 //               is reported.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "claims/claims.h"
 #include "claims/tally.h"
@@ -53,7 +54,7 @@ ClaimResult check_radius_edge(const Mesh& mesh, const Options& options) {
   });
   ClaimResult result = result_of("radius_edge", tally);
   result.method = "interval arithmetic, then rationals";
-  result.details["bound"] = options.radius_edge_bound;
+  result.details()["bound"] = options.radius_edge_bound;
   result.reason = fmt::format("{} of {} cells at or over {}; largest {:.6g}", result.num_violations,
                               result.num_checked, options.radius_edge_bound, result.histograms[0].maximum);
   return result;

@@ -37,6 +37,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -213,7 +214,7 @@ ClaimResult result_of(const Tally& tally, const SizeBounds& bounds, const Option
     if (!bounds.near().empty())
       result.reason += fmt::format(", {:.3g} mm of those near interfaces", graded->slack_of_interfaces_mm());
   }
-  result.details = details_of(bounds, options);
+  result.details() = details_of(bounds, options);
   return result;
 }
 

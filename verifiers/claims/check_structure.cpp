@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
 
@@ -198,8 +199,8 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
   ClaimResult result = result_of("structure", tally);
   result.method = "combinatorial; orientations and separating planes, filtered, then exact";
   result.num_warnings = num_orphans;
-  result.details = std::move(details);
-  result.details["orphan_vertices"] = num_orphans;
+  result.details() = std::move(details);
+  result.details()["orphan_vertices"] = num_orphans;
   result.reason = sentence(result, mesh, is_left_handed);
   return result;
 }

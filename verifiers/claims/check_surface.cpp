@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "claims/check_surface_boundary.h"
@@ -115,11 +116,11 @@ class Report {
 std::uint64_t judge_listed(const Mesh& mesh, const ListedFacets& listed, Report& report,
                            ClaimResult& result) {
   if (listed.listed == 0) return 0;
-  result.details["listed_facets"] = {{"listed", listed.listed},
-                                     {"missing", listed.missing},
-                                     {"stray", listed.stray.size()},
-                                     {"mislabelled", listed.mislabelled.size()},
-                                     {"turned", listed.turned.size()}};
+  result.details()["listed_facets"] = {{"listed", listed.listed},
+                                       {"missing", listed.missing},
+                                       {"stray", listed.stray.size()},
+                                       {"mislabelled", listed.mislabelled.size()},
+                                       {"turned", listed.turned.size()}};
   const std::uint64_t faults =
       listed.missing + listed.stray.size() + listed.mislabelled.size() + listed.turned.size();
   if (mesh.facet_labels.empty()) {
@@ -185,11 +186,11 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
 
   std::optional<ImageTopology> image_topology;
   if (image != nullptr) image_topology = find_topology(*image, threads);
-  result.details["labels"] =
-      labels_table(mesh, label_indices, boundary, topology, image_topology ? &*image_topology : nullptr);
-  result.details["all"] = to_json(boundary.of_label[kAllLabels], topology[kAllLabels]);
-  if (image_topology) result.details["all"]["image"] = to_json(image_topology->all);
-  result.details["connectivity"] =
+  result.details()["labels"] =
+      labels_table(mesh, places, boundary, topology, image_topology ? &*image_topology : nullptr);
+  result.details()["all"] = to_json(boundary.of_label[kAllLabels], topology[kAllLabels]);
+  if (image_topology) result.details()["all"]["image"] = to_json(image_topology->all);
+  result.details()["connectivity"] =
       "mesh: cells across facets; image: 6 for the label with 26 for the rest, and 26 with 6";
   result.reason = fmt::format(
       "{} boundary edges of {} labels not closed and oriented, {} listed facets wrong; non-manifold edges {} "

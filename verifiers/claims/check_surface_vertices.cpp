@@ -30,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "claims/check_labels_reach.h"
 #include "claims/check_surface_boundary.h"
@@ -180,38 +181,28 @@ class SurfaceVertices {
   Constant squared_bound_;
 };
 
-VertexTally tally_of(const SurfaceVertices& vertices, std::size_t count, int threads) {
-  std::vector<VertexTally> parts(static_cast<std::size_t>(threads));
-  parallel_ranges(count, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    for (std::size_t v = begin; v < end; ++v) vertices.check(static_cast<VertexId>(v), parts[thread]);
-  });
-  VertexTally sum;
-  for (const VertexTally& part : parts) sum.add(part);
-  return sum;
-}
-
 }  // namespace
 
 ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                                    const Options& options) {
   ClaimResult result;
   result.claim = "surface_vertices";
-  if (mesh.cells.empty() || mesh.cell_labels.size() != mesh.cells.size()) {
-    result.reason = mesh.cells.empty() ? "the mesh has no cells" : "the mesh states no cell labels";
-    return result;
-  }
+  result.reason = lack_of_cell_labels(mesh);
+  if (!result.reason.empty()) return result;
   const Space space = options.space.value_or(mesh.space);
   const int threads = num_threads(options.threads);
   const SurfaceVertices vertices(mesh, adjacency, image, options, space, threads);
-  const VertexTally found = tally_of(vertices, mesh.vertices.size(), threads);
+  const VertexTally found =
+      tally_over(mesh.vertices.size(), threads, VertexTally{},
+                 [&](std::size_t v, VertexTally& tally) { vertices.check(static_cast<VertexId>(v), tally); });
   result = result_of("surface_vertices", found.tally);
   result.method = "a search for points of another label, decided by filters, then exact rationals";
-  result.details = {{"space", describe(space)},
-                    {"bound_voxels", options.vertex_bound_voxels},
-                    {"vertices", found.num_vertices},
-                    {"furthest_voxels", found.furthest_voxels},
-                    {"vertices_off_own_labels", found.num_off_own_labels}};
-  if (options.delta_mm) result.details["reach_mm"] = vertices.reach_mm();
+  result.details() = {{"space", describe(space)},
+                      {"bound_voxels", options.vertex_bound_voxels},
+                      {"vertices", found.num_vertices},
+                      {"furthest_voxels", found.furthest_voxels},
+                      {"vertices_off_own_labels", found.num_off_own_labels}};
+  if (options.delta_mm) result.details()["reach_mm"] = vertices.reach_mm();
   result.reason = fmt::format(
       "{} violations at {} vertices of boundary and interfaces; the image's label changes within {:.2g} "
       "voxels of each (bound {}); at {} a label of their facets is further off",

@@ -10,6 +10,12 @@
 
 namespace podm::verify {
 
+/// Returns the reason why labels of cells cannot be checked; empty: they can.
+inline const char* lack_of_cell_labels(const Mesh& mesh) {
+  if (mesh.cells.empty()) return "the mesh has no cells";
+  return mesh.cell_labels.size() == mesh.cells.size() ? "" : "the mesh states no cell labels";
+}
+
 // All checks except structure may rely on ids in range and finite coordinates: they are not run on other
 // meshes.
 ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options);

@@ -73,15 +73,11 @@ struct Tally {
 
 /// Calls body(i, tally) for every i in [0, count), on several threads. Each thread begins with a copy of
 /// `empty`.
-template <class Body>
-Tally tally_over(std::size_t count, int threads, const Tally& empty, const Body& body) {
-  std::vector<Tally> parts(static_cast<std::size_t>(std::max(threads, 1)), empty);
-  parallel_ranges(count, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    for (std::size_t i = begin; i < end; ++i) body(i, parts[thread]);
+template <class Part = Tally, class Body>
+Part tally_over(std::size_t count, int threads, const Part& empty, const Body& body) {
+  return sum_over_ranges(count, threads, empty, [&](std::size_t begin, std::size_t end, Part& part) {
+    for (std::size_t i = begin; i < end; ++i) body(i, part);
   });
-  Tally sum = empty;
-  for (const Tally& part : parts) sum.add(part);
-  return sum;
 }
 
 inline Witness cell_witness(const Mesh& mesh, CellId c, std::string statement, double value,

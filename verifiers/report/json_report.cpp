@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "errors.h"
 #include "image/image_frame.h"
@@ -91,7 +92,7 @@ Json claim_of(const ClaimResult& result) {
           {"num_warnings", result.num_warnings},
           {"worst", worst},
           {"histograms", histograms},
-          {"details", result.details},
+          {"details", result.details()},
           {"seconds", result.seconds}};
 }
 

@@ -142,8 +142,8 @@ TEST(Claim, ThatSupersedesOthersGivesAReason) {
 
 TEST(WithdrawnClaim, NeedsItsStatementAndAReason) {
   const auto read = [](const std::string& lines) {
-    const toml::table table = toml::parse("name = 'c'\n" + lines);
-    TomlSection section("claim.toml", table, "[[withdrawn]]");
+    const TomlValue table = parse_toml_text("name = 'c'\n" + lines, "claim.toml");
+    TomlSection section(table, "[[withdrawn]]");
     return read_withdrawn_claim(section);
   };
   const WithdrawnClaim claim = read("statement = 's'\nreason = 'r'\nsuperseded_by = 'd'\n");

@@ -40,8 +40,8 @@ void set_unproved(Row& row, double number) {
 }
 
 void set_misses_per_insertion(Row& row, double value) {
-  const double size = row.asked["target_elements"];
-  const bool is_likwid = row.asked.value("counters", "").starts_with("likwid");
+  const double size = asked_of(row).at("target_elements");
+  const bool is_likwid = asked_of(row).value("counters", "").starts_with("likwid");
   mesh_of(row).counters.emplace().insertions = {{"R1", static_cast<std::uint64_t>(size)}};
   row.process.counters = {
       {is_likwid ? "MEM_LOAD_RETIRED_L3_MISS" : "llc_load_misses", Counter{value * size, "s", {}}}};
@@ -49,7 +49,7 @@ void set_misses_per_insertion(Row& row, double value) {
 
 RanksRecord& ranks_of(Row& row) {
   RanksRecord& ranks = mesh_of(row).ranks.emplace();
-  ranks.number = row.asked.value("ranks", 1);
+  ranks.number = asked_of(row).value("ranks", 1);
   return ranks;
 }
 
@@ -90,10 +90,10 @@ const std::map<std::string, SetValue> kSetters = {
      }},
     {"cells_per_second", set_rate},
     {"cells_per_second_and_core",
-     [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},
+     [](Row& row, double value) { set_rate(row, value * asked_of(row).at("threads").get<double>()); }},
     {"refining_cells_per_second", set_rate},
     {"refining_cells_per_second_and_core",
-     [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},
+     [](Row& row, double value) { set_rate(row, value * asked_of(row).at("threads").get<double>()); }},
     {"side_by_side_refining_cells_per_second", set_rate},
     {"virtual_refining_seconds",
      [](Row& row, double value) { mesh_of(row).virtual_time.emplace().refine_s = value; }},

@@ -81,27 +81,18 @@ class ExperimentRunTest : public testing::Test {
   // Writes an experiment with two trials of `repeats` rounds on an image, and a claim on the ratio of their
   // times.
   void write_experiment(int repeats, const std::string& more = "") {
-    folder_.write("exp.toml", fmt::format(R"(title = "T"
-claim = "C"
-repeats = {}
-[inputs.a]
-image = "{}"
-[[trials]]
-name = "some"
-input = "a"
-seed = [1, 2]
-{}
-[[claims]]
+    const std::string claim = R"([[claims]]
 name = "alike"
 statement = "Both seeds take as long."
 basis = "measured"
 kind = "ratio"
 value = "refining_seconds"
-of = {{seed = 2}}
-over = {{seed = 1}}
+of = {seed = 2}
+over = {seed = 1}
 at_most = 1.5
-)",
-                                          repeats, folder_.write("a.nii", "x"), more));
+)";
+    folder_.write("exp.toml",
+                  experiment_of(repeats, folder_.write("a.nii", "x"), "seed = [1, 2]\n" + more + claim));
   }
   void run(
       Speeds& speeds, const StopQuery& is_interrupted = [] { return false; }) {
@@ -181,7 +172,7 @@ TEST_F(ExperimentRunTest, ARoundThatIsResumedIsJudgedByTheProbesOfBothRuns) {
 }
 
 TEST_F(ExperimentRunTest, SimulatedTrialsNeedNoProbe) {
-  write_experiment(2, "executor = \"virtual\"");
+  write_experiment(2, "executor = \"virtual\"\n");
   std::string text = read_tail(folder_ / "exp.toml", 10'000);
   for (const auto& [from, to] : {std::pair<std::string, std::string>{"\"measured\"", "\"simulated\""},
                                  {"\"refining_seconds\"", "\"virtual_refining_seconds\""}})

@@ -10,16 +10,7 @@
 namespace podm::bench {
 namespace {
 
-const std::string kExperimentWithClaims = R"(title = "Title"
-claim = "Headline"
-paper = "Table 7"
-repeats = 6
-[inputs.a]
-image = "phantom:torus"
-[[trials]]
-name = "some"
-input = "a"
-threads = [1, 2]
+const std::string kExperimentWithClaims = experiment_of(6, "phantom:torus", R"(threads = [1, 2]
 [[claims]]
 name = "fast"
 statement = "It is fast."
@@ -48,7 +39,7 @@ reason = "The word was too strong."
 name = "cheap"
 statement = "It is cheap."
 reason = "It was refuted."
-)";
+)");
 
 // Other work kept half of the processors busy during the measurement of this row.
 Row disturbed(Row row) {

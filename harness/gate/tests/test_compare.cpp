@@ -18,7 +18,7 @@ Row row(double seconds, int threads = 1) {
   made.input.name = made.input.path;
   made.process.peak_rss_bytes = 5000;
   MeshRecord& mesh = mesh_of(made);
-  mesh.options = Json{{"radius_mm", 2.0}};
+  mesh.options = std::make_shared<const Json>(Json{{"radius_mm", 2.0}});
   mesh.threads = {threads, threads};
   mesh.phases_s = {{"refine", seconds}, {"write", 50.0}};
   mesh.cells = 1000;
@@ -64,7 +64,28 @@ TEST(Compare, FewRowsAreNoEvidenceOfTime) {
   const Comparison comparison = compare({row(2)}, {row(4)});
   EXPECT_FALSE(comparison.is_worse);
   EXPECT_TRUE(has(comparison, "2.000"));
-  EXPECT_TRUE(has(comparison, "no interval"));
+  EXPECT_TRUE(has(comparison, "[2.000, 2.000]    0.0 %  not resolved")) << comparison.text;
+}
+
+TEST(Compare, IntervalNeedsItsCoverageToDecide) {
+  Rows few = repeats(2), few_slower = repeats(3);
+  few.pop_back();
+  few_slower.pop_back();
+  const Comparison unresolved = compare(few, few_slower);
+  EXPECT_FALSE(unresolved.is_worse) << unresolved.text;
+  EXPECT_TRUE(has(unresolved, "93.8 %  not resolved")) << "six rows on both sides";
+  const Comparison resolved = compare(repeats(2), repeats(3));
+  EXPECT_TRUE(resolved.is_worse);
+  EXPECT_TRUE(has(resolved, "96.9 %  WORSE")) << resolved.text;
+}
+
+TEST(Compare, WideIntervalIsNotTheSame) {
+  Rows noisy = repeats(2);
+  noisy.front() = row(1);
+  noisy.back() = row(4);
+  const Comparison comparison = compare(noisy, noisy);
+  EXPECT_FALSE(comparison.is_worse);
+  EXPECT_TRUE(has(comparison, "[0.250, 4.000]   96.9 %  not resolved")) << comparison.text;
 }
 
 TEST(Compare, WorkOfOneThreadNeedsNoRepeats) {
@@ -99,7 +120,7 @@ TEST(Compare, AnotherMeshIsReportedOnOneThreadOnly) {
 TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
   EXPECT_THROW(compare({row(2)}, {row(2, 2)}), InputError);
   Row other = row(2);
-  mesh_of(other).options = Json{{"radius_mm", 3.0}};
+  mesh_of(other).options = std::make_shared<const Json>(Json{{"radius_mm", 3.0}});
   EXPECT_THROW(compare({row(2)}, {other}), InputError);
   Rows both = repeats(2);
   both.push_back(row(9, 2));

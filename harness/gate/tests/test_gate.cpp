@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "errors.h"
 #include "gate/gate_budget.h"
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 
 namespace podm::bench {

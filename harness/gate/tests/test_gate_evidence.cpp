@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "errors.h"
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 
 namespace podm::bench {

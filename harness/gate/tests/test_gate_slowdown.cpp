@@ -9,6 +9,7 @@
 #include "gate/drawn_order.h"
 #include "gate/gate_evidence.h"
 #include "gate/simulated_machine.h"
+#include "rows/order_statistics.h"
 
 namespace podm::bench {
 namespace {
@@ -67,12 +68,12 @@ TEST(Slowdown, IntervalsHoldTheTrueRatioAtAllLooksTogether) {
     bool holds = true;
     for (const int look : kLooks) {
       while (static_cast<int>(rounds.size()) < look) rounds.push_back(machine.round(1.07));
-      const Ratio ratio = head_over_base(rounds);
+      const CentreEstimate ratio = head_over_base(rounds);
       holds = holds && ratio.low <= 1.07 && 1.07 <= ratio.high;
     }
     num_held += holds;
   }
-  EXPECT_GE(num_held, kConfidence * kTries);
+  EXPECT_GE(num_held, kConfidenceOfLooks * kTries);
 }
 
 TEST(Slowdown, ThatIsClearTakesTheFirstLookAloneAndItsRatioIsTheRounds) {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "tests/fake_mesher.h"
+#include "tests/temporary_folder.h"
 
 namespace podm::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "process/process.h"
-#include "tests/fake_mesher.h"
+#include "tests/temporary_folder.h"
 
 namespace podm::bench {
 namespace {

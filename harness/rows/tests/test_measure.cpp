@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rows/codec.h"
 #include "rows/series.h"
 #include "tests/synthetic_rows.h"
 
@@ -79,7 +80,7 @@ Row row_on_ranks() {
 // Functions that remove parts of the full row.
 using Take = void (*)(Row& row);
 void take_mesh(Row& row) { row.mesh.reset(); }
-void take_threads(Row& row) { row.asked.erase("threads"); }
+void take_threads(Row& row) { row.asked.reset(); }
 void take_phases(Row& row) { row.mesh->phases_s.clear(); }
 void take_virtual(Row& row) { row.mesh->virtual_time.reset(); }
 void take_worker_seconds(Row& row) { row.mesh->virtual_time->worker_s.reset(); }
@@ -239,7 +240,7 @@ TEST(Measures, PassOnTheRowsOwnReason) {
 TEST(Measures, OfLikwidAreItsOwnEvents) {
   const Measure& misses = *find_measure("last_level_misses_per_further_insertion");
   Row row = full_row();  // the kernel's counters are present, too
-  row.asked["counters"] = "likwid:CACHE";
+  ask(row, "counters", "likwid:CACHE");
   EXPECT_EQ(misses.read(row).absence, "likwid:CACHE counts no misses of the last level");
   row.process.counters["likwid:CACHE"] = Unavailable{"not installed"};
   EXPECT_EQ(misses.read(row).absence, "likwid:CACHE: unavailable: not installed");
@@ -287,7 +288,7 @@ TEST(Growth, LeavesOutWhatBothSizesPay) {
   std::vector<Row> rows;
   for (const std::uint64_t size : {1000, 5000, 9000}) {
     rows.push_back(full_row());
-    rows.back().asked["target_elements"] = size;
+    ask(rows.back(), "target_elements", size);
     rows.back().process.counters = {{"llc_load_misses", Counter{1000 + 2 * size, "s", {}}}};
     rows.back().mesh->counters->insertions = {{"R1", size}};
   }

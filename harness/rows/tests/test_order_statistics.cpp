@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -22,6 +23,27 @@ std::vector<double> noisy(double median, int n, double deviation, std::mt19937_6
   std::vector<double> samples(static_cast<std::size_t>(n));
   for (double& sample : samples) sample = noise(random);
   return samples;
+}
+
+TEST(Median, OfKnownSamples) {
+  EXPECT_EQ(median({3}), 3);
+  EXPECT_EQ(median({4, 1}), 2.5);
+  EXPECT_EQ(median({9, 1, 2}), 2);
+  EXPECT_EQ(median({8, 1, 4, 2}), 3);
+}
+
+TEST(Median, HalfTheSamplesAreOnEitherSide) {
+  std::mt19937_64 random(1);
+  for (int num_samples = 1; num_samples < 40; ++num_samples) {
+    const std::vector<double> samples = noisy(2, num_samples, 0.1, random);
+    const double middle = median(samples);
+    const auto num_at_most =
+        std::count_if(samples.begin(), samples.end(), [&](double s) { return s <= middle; });
+    const auto num_at_least =
+        std::count_if(samples.begin(), samples.end(), [&](double s) { return s >= middle; });
+    EXPECT_GE(2 * num_at_most, num_samples);
+    EXPECT_GE(2 * num_at_least, num_samples);
+  }
 }
 
 // Counts the 2^n ways in which n samples lie about the median. The ways that leave no sample, or too few, on

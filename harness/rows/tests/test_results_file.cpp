@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "process/process.h"
+#include "rows/codec.h"
 #include "rows/results_file.h"
-#include "tests/fake_mesher.h"
 #include "tests/synthetic_rows.h"
+#include "tests/temporary_folder.h"
 
 namespace podm::bench {
 namespace {

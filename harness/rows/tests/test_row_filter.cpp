@@ -35,12 +35,13 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   again[1].warmup = true;
   EXPECT_EQ(keys(again), "a");
   Row peer = row("p", "1"), machine = row("m", "1");
-  peer.asked["mesher"] = "other";
+  ask(peer, "mesher", "other");
   peer.programs.peer = {"other", "its own", "1.0"};
-  machine.asked["measure"] = "memory_latency";
+  ask(machine, "measure", "memory_latency");
   EXPECT_EQ(keys({peer, machine, row("a", "1"), row("b", "2")}), "pmb") << "they are not of podm's build";
   Row on_ranks = row("r", "1"), earlier = row("s", "1");
-  on_ranks.asked["ranks"] = earlier.asked["ranks"] = 2;
+  ask(on_ranks, "ranks", 2);
+  ask(earlier, "ranks", 2);
   on_ranks.programs.podm_mpi.emplace().sha256 = "new";
   earlier.programs.podm_mpi.emplace().sha256 = "old";
   EXPECT_EQ(keys({earlier, on_ranks, row("a", "2")}), "ra") << "podm-mpi is a program of its own";
@@ -59,7 +60,8 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
 Row simulated(const std::string& trial, const std::string& cpu, const std::string& model = "m") {
   Row row = refined_in(1, {{"executor", "virtual"}, {"topology", "machine.toml"}}, 1, trial);
   row.environment.cpu = cpu;
-  mesh_of(row).virtual_time.emplace().as_written["machine"]["sha256"] = model;
+  mesh_of(row).virtual_time.emplace().as_written =
+      std::make_shared<const Json>(Json{{"machine", {{"sha256", model}}}});
   return row;
 }
 

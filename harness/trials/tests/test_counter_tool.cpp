@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 #include "trials/counter_tool.h"
 #include "trials/trial.h"

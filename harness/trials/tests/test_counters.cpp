@@ -6,7 +6,8 @@
 
 #include <cerrno>
 
-#include "tests/fake_mesher.h"
+#include "rows/codec.h"
+#include "tests/temporary_folder.h"
 #include "trials/counters.h"
 
 namespace podm::bench {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "errors.h"
 #include "tests/fake_mesher.h"
 #include "trials/trial.h"
 

@@ -3,9 +3,11 @@
 
 #include <sstream>
 
+#include "errors.h"
 #include "machine/environment.h"
 #include "machine/machine.h"
 #include "process/sha256.h"
+#include "rows/codec.h"
 #include "rows/table.h"
 #include "tests/fake_mesher.h"
 #include "trials/record.h"

@@ -2,8 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "machine/machine.h"
-#include "options/option_matrix.h"
+#include "options/option_keys.h"
 #include "process/usable_processors.h"
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 #include "trials/trial.h"
 

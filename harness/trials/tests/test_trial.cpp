@@ -6,6 +6,7 @@
 #include "machine/machine.h"
 #include "process/programs.h"
 #include "process/usable_processors.h"
+#include "rows/codec.h"
 #include "tests/fake_mesher.h"
 #include "trials/ranks.h"
 #include "trials/trial.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "cli/reports/json_text.h"
@@ -43,8 +44,8 @@ void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {
 
 std::map<std::string, std::string> MeshRun::verdicts() const {
   std::map<std::string, std::string> verdicts;
-  if (verification.is_null()) return verdicts;
-  for (const auto& [claim, result] : verification.at("claims").items())
+  if (!verification) return verdicts;
+  for (const auto& [claim, result] : verification->at("claims").items())
     verdicts[claim] = result.at("verdict");
   return verdicts;
 }
@@ -68,7 +69,7 @@ std::vector<std::string> MeshRun::unmet() const {
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
   count(misses.orientation, "cells that rounding made flat or inverted");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
-  if (command.verify && verification.is_null() && mesh.cells > 0)
+  if (command.verify && !verification && mesh.cells > 0)
     sentences.push_back("podm-verify: ended early by a signal; no claim is decided");
   for (const auto& [claim, verdict] : verdicts())
     if (verdict != "pass") sentences.push_back(fmt::format("podm-verify: claim {}: {}", claim, verdict));

@@ -3,7 +3,8 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ MeshNumbers numbers_of(const TetMesh& mesh);
 /// Adds up counts of the same pair.
 std::vector<FacetCount> sums_of(const std::vector<FacetCount>& counts);
 
+/// JSON that is complete. A pointer needs no definition of the type.
+using JsonPointer = std::shared_ptr<const nlohmann::ordered_json>;
+
 struct MeshRun {
   const MeshCommand& command;
   const LabelImage& image;
@@ -39,10 +43,10 @@ struct MeshRun {
   std::string mesh_sha256;  ///< empty: no process holds the whole mesh
   double read_s = 0, write_s = 0;
   std::uint64_t peak_rss_bytes = 0;
-  nlohmann::ordered_json verification = nullptr;  ///< report of podm-verify; null: none
+  JsonPointer verification = nullptr;  ///< report of podm-verify; null: none
   std::string program = "podm";
-  nlohmann::ordered_json ranks = nullptr;  ///< for the record; null: one process made the mesh
-  std::string ranks_text = {};             ///< for the summary
+  JsonPointer ranks = nullptr;  ///< for the record; null: one process made the mesh
+  std::string ranks_text = {};  ///< for the summary
 
   /// Takes over what mesh_image() returned of this run, and adds the warnings of the image.
   void take(MeshingReport&& finished, const TetMesh& made);

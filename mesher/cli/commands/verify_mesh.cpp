@@ -143,13 +143,13 @@ void check_verifier(const MeshCommand& command) {
     throw InputError(fmt::format("--verify: {} cannot be run", verifier_path()));
 }
 
-nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals) {
+JsonPointer verify_mesh(const MeshRun& run, const SignalThread& signals) {
   if (signals.token().stop_requested()) return nullptr;
   std::optional<TemporaryFolder> scratch;
   const auto command = verifier_command(run, scratch);
   ChildProcess verifier(command, "--verify", signals);
   auto report = nlohmann::ordered_json::parse(verifier.read(signals), nullptr, false);
-  if (report.is_object()) return report;
+  if (report.is_object()) return std::make_shared<const nlohmann::ordered_json>(std::move(report));
   if (signals.token().stop_requested()) return nullptr;
   throw InputError(fmt::format("--verify: {} printed no report", command[0]));
 }

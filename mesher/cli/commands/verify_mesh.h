@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -35,6 +34,6 @@ std::vector<std::string> verifier_options(const MeshRun& run,
 /// mesh. The readable report goes to standard error unless the run is quiet. Returns the report of
 /// podm-verify --json, or null if a signal ended the verifier or came before it. Throws InputError if the
 /// verifier is missing or reports nothing.
-nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals);
+JsonPointer verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

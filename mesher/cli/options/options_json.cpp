@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cli/options/add_options.h"
 
@@ -19,6 +20,26 @@ std::string with_underscores(std::string name) {
 std::string experiment_key(const Declaration& of) {
   const std::string key = with_underscores(of.name);
   return of.record != nullptr && of.record == key + "_mm" ? of.record : key;
+}
+
+// Returns the key of the option in a record.
+std::string record_key(const Declaration& of) {
+  return of.record != nullptr ? of.record : with_underscores(of.name);
+}
+
+// A value as records have it; null for labels and lists, which depend on the image.
+template <class Value>
+Json json_of(const Value& value) {
+  if constexpr (Named<Value>) {
+    return to_string(value);
+  } else if constexpr (std::same_as<Value, MemoryLimit>) {
+    return value.bytes;
+  } else if constexpr (std::is_arithmetic_v<Value> || std::same_as<Value, std::string> ||
+                       std::same_as<Value, std::array<double, 2>>) {
+    return value;
+  } else {
+    return nullptr;
+  }
 }
 
 template <class Value>
@@ -101,16 +122,21 @@ Json object_of(const Declaration& of, const Value& value) {
 
 }  // namespace
 
-std::string record_key(const Declaration& of) {
-  return of.record != nullptr ? of.record : with_underscores(of.name);
-}
-
 std::string options_json() {
   Json all = Json::array();
   const MeshCommand command;
   for_each_option(command,
                   [&](const Declaration& of, const auto& value) { all.push_back(object_of(of, value)); });
   return all.dump(1);
+}
+
+Json option_values(const MeshCommand& command) {
+  Json values = Json::object();
+  for_each_option(command, [&](const Declaration& of, const auto& value) {
+    if ((of.uses & kInPython) != 0 && of.group != OptionGroup::kLabels)
+      values[record_key(of)] = json_of(value);
+  });
+  return values;
 }
 
 void add_options_command(CLI::App& program) {

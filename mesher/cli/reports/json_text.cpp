@@ -1,5 +1,7 @@
 #include "cli/reports/json_text.h"
 
+#include <nlohmann/json.hpp>
+
 namespace podm::cli {
 
 std::string json_line(const nlohmann::ordered_json& value) {

@@ -1,7 +1,7 @@
 // JSON output of the program.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "podm/label_image.h"

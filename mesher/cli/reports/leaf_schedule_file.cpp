@@ -1,5 +1,7 @@
 #include "cli/reports/leaf_schedule_file.h"
 
+#include <nlohmann/json.hpp>
+
 #include "cli/reports/json_text.h"
 #include "files/atomic_file.h"
 #include "image/working_frame.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "cli/processes/python_scripts.h"
 #include "cli/reports/json_text.h"
@@ -42,11 +43,12 @@ void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& sig
   if (readable != mesh_path) write_mesh(mesh, readable);
   const std::string request = scratch / "request.json";
   AtomicFile request_file(request);
-  request_file.write(json_line({{"mesh", readable},
-                                {"name", mesh_path.filename().string()},
-                                {"record", record(run)},
-                                {"verification", run.verification},
-                                {"unmet", run.unmet()}}));
+  request_file.write(
+      json_line({{"mesh", readable},
+                 {"name", mesh_path.filename().string()},
+                 {"record", record(run)},
+                 {"verification", run.verification ? *run.verification : nlohmann::ordered_json()},
+                 {"unmet", run.unmet()}}));
   request_file.publish();
   AtomicFile page(path);
   page.write(output_of_script(request, signals));

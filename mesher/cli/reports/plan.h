@@ -1,7 +1,7 @@
 // podm info --plan and podm.plan: the predicted cost of a run, and the parts that its mesh will lose.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

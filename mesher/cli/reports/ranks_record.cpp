@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cli/options/options_for_image.h"
 #include "cli/processes/process_memory.h"
@@ -209,8 +210,9 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
               .vertices = result.piece.total_vertices,
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
-  run.ranks = ranks_of(result.parts, spent, machines, run);
-  run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  Json record = ranks_of(result.parts, spent, machines, run);
+  record["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  run.ranks = std::make_shared<const Json>(std::move(record));
   run.ranks_text = text_of(result.parts, spent, machines, result.report.algorithm) +
                    fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }

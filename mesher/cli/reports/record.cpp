@@ -1,6 +1,7 @@
 #include "cli/reports/record.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands/verify_mesh.h"
 #include "cli/options/options_json.h"
@@ -63,11 +64,7 @@ Json size_near_of(const SizeOptions& sizes) {
 
 // The options as given; 0 means what it means in MeshingOptions. Labels are those of the image.
 Json options_of(const MeshRun& run) {
-  Json options = Json::object();
-  for_each_option(run.command, [&](const Declaration& of, const auto& value) {
-    if ((of.uses & kInPython) != 0 && of.group != OptionGroup::kLabels)
-      options[record_key(of)] = json_of(value);
-  });
+  Json options = option_values(run.command);
   Json& radius_of = options["radius_of_mm"] = Json::object();
   for (const auto& [value, radius_mm] : run.options.sizes.radius_of_mm)
     radius_of[std::to_string(value)] = radius_mm;
@@ -264,7 +261,7 @@ Json optimization_of(const MeshingReport& report) {
           {"successes", counts_of(done.successes)}};
 }
 
-// Returns the claims and options with which podm-verify judges the mesh; null without a mesh.
+// The inputs that podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
 Json verify_of(const MeshRun& run) {
   if (run.mesh.cells == 0) return nullptr;
   const Judging judging = judging_of(run);
@@ -362,7 +359,7 @@ Json record(const MeshRun& run) {
         {"contention", to_string(run.options.team.contention)},
         {"begging", to_string(run.options.team.begging)}}},
       {"leaves", leaves_of(run)},
-      {"ranks", run.ranks},
+      {"ranks", run.ranks ? *run.ranks : Json()},
       {"executor", to_string(run.options.team.executor)},
       {"virtual", virtual_of(run)},
       {"verify", verify_of(run)},

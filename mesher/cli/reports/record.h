@@ -2,7 +2,7 @@
 // records.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "cli/commands/mesh_run.h"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "claims/tests/small_meshes.h"
@@ -18,12 +19,12 @@ TEST(BoundaryAngles, DistinguishesEquality) {
   const Mesh cubes = kuhn_cubes(1);  // all boundary facets have angles of 45, 45 and 90 degrees
   const ClaimResult equal = angles_of(cubes, 45);
   EXPECT_EQ(equal.verdict, Verdict::kFail);
-  EXPECT_EQ(equal.details["facets_equal_to_bound"], 12);
+  EXPECT_EQ(equal.details()["facets_equal_to_bound"], 12);
   EXPECT_TRUE(names(equal, "angles exceed the bound (equal to it)"));
   EXPECT_EQ(angles_of(cubes, std::nextafter(45, 0)).verdict, Verdict::kPass);
   const ClaimResult over = angles_of(cubes, std::nextafter(45, 90));
   EXPECT_EQ(over.num_violations, 12);
-  EXPECT_EQ(over.details["facets_equal_to_bound"], 0);
+  EXPECT_EQ(over.details()["facets_equal_to_bound"], 0);
 }
 
 TEST(BoundaryAngles, DecidesThirtyDegreesExactly) {
@@ -33,8 +34,8 @@ TEST(BoundaryAngles, DecidesThirtyDegreesExactly) {
   const auto with_z = [&](double z) {
     return angles_of(mesh_of({{0, 0, 0}, u, {v[0], v[1], z}, {3, -1, -1}}, {{0, 1, 2, 3}}), 30);
   };
-  EXPECT_EQ(with_z(1).details["facets_equal_to_bound"], 1);
-  EXPECT_EQ(with_z(std::nextafter(1, 2)).details["facets_equal_to_bound"], 0);
+  EXPECT_EQ(with_z(1).details()["facets_equal_to_bound"], 1);
+  EXPECT_EQ(with_z(std::nextafter(1, 2)).details()["facets_equal_to_bound"], 0);
   EXPECT_EQ(with_z(std::nextafter(1, 2)).num_violations, with_z(1).num_violations - 1);
   EXPECT_EQ(with_z(std::nextafter(1, 0)).num_violations, with_z(1).num_violations);
 }
@@ -54,7 +55,7 @@ TEST(BoundaryAngles, HoldsEveryBound) {
 
 TEST(BoundaryAngles, NoFacetExceedsSixtyDegrees) {
   const Mesh regular = mesh_of({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2, 3}});
-  EXPECT_EQ(angles_of(regular, 60).details["facets_equal_to_bound"], 4);
+  EXPECT_EQ(angles_of(regular, 60).details()["facets_equal_to_bound"], 4);
   for (const double bound : {60.5, 90.0, 100.0, 150.0, 179.0})
     EXPECT_EQ(angles_of(regular, bound).num_violations, 4);
   EXPECT_EQ(angles_of(regular, 59.999).verdict, Verdict::kPass);

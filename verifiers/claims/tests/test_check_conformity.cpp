@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "claims/claims.h"
@@ -13,7 +14,7 @@ ClaimResult check(const Mesh& mesh, const Schedule* schedule = nullptr) {
   return check_conformity(mesh, find_adjacency(mesh, 1), schedule, Options{});
 }
 
-std::uint64_t count_of(const ClaimResult& result, const char* name) { return result.details.at(name); }
+std::uint64_t count_of(const ClaimResult& result, const char* name) { return result.details().at(name); }
 
 Mesh boxes() { return kuhn_mesh(make_image({12, 9, 8}, kUnitAffine, two_boxes)); }
 
@@ -92,7 +93,7 @@ TEST(Conformity, VerticesAreLookedAtAlongLeafBoundaries) {
   const char* name = "doubled_vertices_at_leaf_boundaries";
   Mesh mesh = with_twins({3, 2.5, 2.5});
   EXPECT_EQ(count_of(check(mesh, &schedule), name), 1U);
-  EXPECT_FALSE(check(mesh).details.contains(name)) << "without a schedule there are no leaves";
+  EXPECT_FALSE(check(mesh).details().contains(name)) << "without a schedule there are no leaves";
   mesh = with_twins({3 + 1e-9, 2.5, 2.5});
   EXPECT_EQ(count_of(check(mesh, &schedule), name), 1U) << "rounding does not hide it";
   mesh = with_twins({3.5, 2.5, 2.5});

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "claims/check_fidelity_facets.h"
@@ -20,7 +21,7 @@ ClaimResult fidelity_of(const Mesh& mesh, const Image& image, double bound = 1, 
 }
 
 double number(const ClaimResult& result, const char* way, const char* what) {
-  return result.details.at(way).at(what).get<double>();
+  return result.details().at(way).at(what).get<double>();
 }
 
 // The isosurface is the voxels' faces, except near edges, where it cuts the corners of a box.
@@ -109,7 +110,7 @@ TEST(Fidelity, LabelsAreComparedWithTheirOwnBoundary) {
     return label == 0 ? 0U : i < 9 ? 3U : 7U;
   });
   const ClaimResult result = fidelity_of(kuhn_mesh(other), image);
-  for (const auto& row : result.details["labels"]) {
+  for (const auto& row : result.details()["labels"]) {
     // Label 3 lost its part beyond the wall; label 7 came nearer to the end of the box, one voxel away.
     EXPECT_NEAR(row["mesh_to_image"]["max_mm"].get<double>(), row["label"] == 3 ? 3 : 1, 0.3);
     EXPECT_NEAR(row["image_to_mesh"]["max_mm"].get<double>(), row["label"] == 3 ? 1.5 : 3, 1e-9);
@@ -154,8 +155,8 @@ TEST(Fidelity, OfASmoothedImageIsToItsSmoothInterface) {
     // At most a diagonal of the voxels that the mesh is made of.
     EXPECT_LT(number(by_round, "mesh_to_image", "max_voxels"), std::sqrt(3.0) / 3);
     // The report about the image before smoothing equals the report for that image alone.
-    EXPECT_EQ(by_round.details.at("mesh_to_voxels"), by_stairs.details.at("mesh_to_image"));
-    EXPECT_FALSE(by_stairs.details.contains("mesh_to_voxels"));
+    EXPECT_EQ(by_round.details().at("mesh_to_voxels"), by_stairs.details().at("mesh_to_image"));
+    EXPECT_FALSE(by_stairs.details().contains("mesh_to_voxels"));
   }
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "claims/check_labels_circumcenter.h"
@@ -27,7 +28,7 @@ TEST(Labels, VoxelsCutIntoCellsPassInEveryFrame) {
       EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
       EXPECT_EQ(result.num_violations, 0U);
       EXPECT_EQ(result.num_checked, mesh.cells.size());
-      EXPECT_EQ(result.details["within_rounding"], 0);
+      EXPECT_EQ(result.details()["within_rounding"], 0);
       for (const LabelValue label : {1, 2}) {
         const auto& row = row_of(result, label);
         EXPECT_EQ(row["dice"], 1);
@@ -49,7 +50,7 @@ TEST(Labels, TheStatedSpaceCanBeOverridden) {
 TEST(Labels, AnUnstatedSpaceIsSaidToBeAssumed) {
   const Image image = make_image({13, 11, 9}, kUnitAffine, two_balls);
   const ClaimResult result = labels_of(kuhn_mesh(image, Space::kUnstated), image);
-  EXPECT_NE(result.details["space"].get<std::string>().find("assumed"), std::string::npos);
+  EXPECT_NE(result.details()["space"].get<std::string>().find("assumed"), std::string::npos);
 }
 
 TEST(Labels, AShiftOfMoreThanHalfAVoxelFailsAndOfLessPasses) {
@@ -72,7 +73,7 @@ TEST(Labels, HalfAVoxelIsATieThatIsDecidedExactly) {
   const Mesh mesh = moved(kuhn_mesh(image), image, {-0.5, 0, 0});
   const ClaimResult result = labels_of(mesh, image);
   EXPECT_GT(result.num_exact, 0U);
-  EXPECT_GT(result.details["within_rounding"], 0);  // 7 would win half an ulp to the right
+  EXPECT_GT(result.details()["within_rounding"], 0);  // 7 would win half an ulp to the right
   EXPECT_EQ(result.verdict, Verdict::kPass);
 }
 
@@ -110,7 +111,7 @@ TEST(Labels, ALabelTheImageLacksFailsEvenAsNegativeOrHuge) {
     mesh.cell_labels[0] = unknown;
     const ClaimResult result = labels_of(mesh, image);
     EXPECT_EQ(result.num_violations, 2U);  // the cell, and the label
-    EXPECT_EQ(result.details["labels_unknown_to_image"], nlohmann::json::array({unknown}));
+    EXPECT_EQ(result.details()["labels_unknown_to_image"], nlohmann::json::array({unknown}));
   }
 }
 
@@ -127,7 +128,7 @@ TEST(Labels, AMissingLabelFailsOnlyIfItIsLarge) {
     mesh.cell_labels.assign(cells.size(), 1);
     const ClaimResult result = labels_of(mesh, image);
     EXPECT_EQ(result.verdict, size == 10 ? Verdict::kPass : Verdict::kFail);
-    EXPECT_EQ(result.details["labels_absent_in_mesh"].size(), 1U);
+    EXPECT_EQ(result.details()["labels_absent_in_mesh"].size(), 1U);
   }
 }
 
@@ -186,7 +187,7 @@ TEST(Labels, ASmoothedTieIsDecidedExactly) {
       smoothed(make_image({12, 7, 7}, kUnitAffine, [](int i, int, int) { return i < 6 ? 3U : 7U; }), 1);
   const ClaimResult result = labels_of(moved(kuhn_mesh(image), image, {-0.5, 0, 0}), image);
   EXPECT_GT(result.num_exact, 0U);
-  EXPECT_GT(result.details["within_rounding"], 0);
+  EXPECT_GT(result.details()["within_rounding"], 0);
   EXPECT_EQ(result.verdict, Verdict::kPass);
 }
 

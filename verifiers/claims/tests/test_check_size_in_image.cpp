@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "claims/graded_sizes.h"
 #include "claims/interface_faces.h"
@@ -294,7 +295,7 @@ TEST(SizeInImage, ACellIsOverItsGradeJustBeyondTheSlack) {
     EXPECT_EQ(verdict_of(mesh, image, options), verdict);
     const ClaimResult result = check_size(mesh, &image, nullptr, options);
     EXPECT_NEAR(result.worst.at(0).severity, 1, 1e-4);
-    EXPECT_NEAR(result.details["grade"]["slack_of_voxels_mm"].get<double>(), slack, 1e-12);
+    EXPECT_NEAR(result.details()["grade"]["slack_of_voxels_mm"].get<double>(), slack, 1e-12);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "claims/tests/small_meshes.h"
 
@@ -9,7 +10,7 @@ namespace podm::verify {
 namespace {
 
 std::uint64_t violations(const ClaimResult& result, const char* part) {
-  return result.details.at("violations").value(part, std::uint64_t{0});
+  return result.details().at("violations").value(part, std::uint64_t{0});
 }
 
 TEST(Structure, AcceptsSoundMeshes) {
@@ -50,17 +51,17 @@ TEST(Structure, DistinguishesInvertedFlatAndLeftHanded) {
   std::swap(inverted.cells[7][1], inverted.cells[7][2]);
   ClaimResult result = structure_of(inverted);
   EXPECT_TRUE(names(result, "cells are positively oriented"));
-  EXPECT_EQ(result.details["negative_cells"], 1);
-  EXPECT_FALSE(result.details["is_left_handed"]);
+  EXPECT_EQ(result.details()["negative_cells"], 1);
+  EXPECT_FALSE(result.details()["is_left_handed"]);
   EXPECT_EQ(result.bad_cells, std::vector<CellId>{7});
 
   result = structure_of(two_cells({0.25, 0.25, 0}));
   EXPECT_TRUE(names(result, "no cell is flat"));
-  EXPECT_EQ(result.details["flat_cells"], 1);
+  EXPECT_EQ(result.details()["flat_cells"], 1);
 
   result = structure_of(turned_over(kuhn_cubes(2)));
   EXPECT_EQ(result.verdict, Verdict::kFail);
-  EXPECT_TRUE(result.details["is_left_handed"]);
+  EXPECT_TRUE(result.details()["is_left_handed"]);
   EXPECT_NE(result.reason.find("left-handed"), std::string::npos);
 }
 
@@ -227,7 +228,7 @@ TEST(Structure, DoesNotDependOnThreads) {
     const ClaimResult one = structure_of(m, 1);
     for (const int threads : {2, 3, 7}) {
       const ClaimResult many = structure_of(m, threads);
-      EXPECT_EQ(many.details, one.details);
+      EXPECT_EQ(many.details(), one.details());
       EXPECT_EQ(many.bad_cells, one.bad_cells);
       ASSERT_EQ(many.worst.size(), one.worst.size());
       for (std::size_t w = 0; w < one.worst.size(); ++w) {

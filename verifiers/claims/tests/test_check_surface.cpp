@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "claims/claims.h"
 #include "image/image_topology.h"
@@ -41,7 +42,7 @@ TEST(Surface, BoxesBallsAndShellsAreClosedAndCounted) {
     const Mesh mesh = kuhn_mesh(image);
     const ClaimResult result = surface_of(mesh, &image);
     EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
-    for (const auto& row : {row_of(result, 1), result.details["all"]}) {
+    for (const auto& row : {row_of(result, 1), result.details()["all"]}) {
       EXPECT_EQ(row["components"], c.components);
       EXPECT_EQ(row["euler"], c.euler);
       EXPECT_EQ(row["cells"], mesh.cells.size());
@@ -66,8 +67,8 @@ TEST(Surface, EulerNumbersAreTheImagesForRandomLabels) {
     EXPECT_EQ(row["components"], row["image"]["components_6"]);
     EXPECT_EQ(row["unbalanced_edges"], 0);
   }
-  EXPECT_EQ(result.details["all"]["euler"], result.details["all"]["image"]["euler_26"]);
-  EXPECT_EQ(result.details["all"]["components"], result.details["all"]["image"]["components_6"]);
+  EXPECT_EQ(result.details()["all"]["euler"], result.details()["all"]["image"]["euler_26"]);
+  EXPECT_EQ(result.details()["all"]["components"], result.details()["all"]["image"]["components_6"]);
 }
 
 TEST(Surface, BoxesThatMeetAtAnEdgeOrACornerAreNotManifoldThere) {
@@ -130,8 +131,8 @@ TEST(Surface, AFacetOfThreeCellsFails) {
   mesh.cells = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}};
   mesh.cell_labels = {1, 1, 1};
   const ClaimResult result = surface_of(mesh);
-  EXPECT_EQ(result.details["all"]["euler"], 6 - 12 + 10 - 3);
-  EXPECT_EQ(result.details["all"]["components"], 1);
+  EXPECT_EQ(result.details()["all"]["euler"], 6 - 12 + 10 - 3);
+  EXPECT_EQ(result.details()["all"]["components"], 1);
 }
 
 TEST(Surface, ListedFacetsAreTheCellsOnes) {
@@ -184,7 +185,7 @@ TEST(Surface, CellsOfLabelZeroAreOutside) {
   for (LabelValue& label : zeroed.cell_labels) label = label == 7 ? 0 : label;
   const ClaimResult all = surface_of(mesh), part = surface_of(zeroed);
   EXPECT_EQ(row_of(part, 3), row_of(all, 3));
-  EXPECT_EQ(part.details["labels"].size(), 1U);
+  EXPECT_EQ(part.details()["labels"].size(), 1U);
 }
 
 TEST(Surface, WithoutLabelsTheMeshIsOneSolid) {
@@ -201,7 +202,7 @@ TEST(Surface, AnEmptyMeshIsNotRun) { EXPECT_EQ(surface_of({}).verdict, Verdict::
 TEST(Surface, ThreadsDoNotMatter) {
   const Image image = make_image({13, 11, 9}, kUnitAffine, two_balls);
   const Mesh mesh = kuhn_mesh(image);
-  EXPECT_EQ(surface_of(mesh, &image, 1).details, surface_of(mesh, &image, 7).details);
+  EXPECT_EQ(surface_of(mesh, &image, 1).details(), surface_of(mesh, &image, 7).details());
 }
 
 }  // namespace

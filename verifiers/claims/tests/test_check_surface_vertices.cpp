@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "claims/check_labels_reach.h"
@@ -87,8 +88,8 @@ TEST(SurfaceVertices, AllPointsOfTheIsosurfaceAreOnIt) {
         if (is_smoothed) image.smoothing = smooth(image, 1.5 * image.spacing[0], 2);
         const ClaimResult result = surface_vertices_of(cells_on_isosurface(image, space, 1), image);
         EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
-        EXPECT_EQ(result.details.at("vertices"), 400);
-        EXPECT_LT(result.details.at("furthest_voxels").get<double>(), 1e-9);
+        EXPECT_EQ(result.details().at("vertices"), 400);
+        EXPECT_LT(result.details().at("furthest_voxels").get<double>(), 1e-9);
         EXPECT_FALSE(result.worst.empty()) << "the closest calls";
       }
 }
@@ -100,7 +101,7 @@ TEST(SurfaceVertices, ThoseOfStairsAreNoneOfASmoothInterface) {
   const ClaimResult result = surface_vertices_of(cells_on_isosurface(stairs, Space::kRas, 1), round);
   EXPECT_EQ(result.verdict, Verdict::kFail);
   EXPECT_GT(result.num_violations, 350U);  // of 400
-  EXPECT_GT(result.details.at("furthest_voxels").get<double>(), 0.1);
+  EXPECT_GT(result.details().at("furthest_voxels").get<double>(), 0.1);
 }
 
 TEST(SurfaceVertices, TheBoundDecidesOnEitherSide) {
@@ -154,7 +155,7 @@ TEST(SurfaceVertices, LabelsOfFacetsAreWithinReach) {
   ASSERT_EQ(result.num_violations, 1U);
   EXPECT_EQ(result.worst[0].vertices, std::vector<VertexId>{0});
   EXPECT_EQ(result.worst[0].label, 2);
-  EXPECT_EQ(result.details.at("vertices_off_own_labels"), 4);
+  EXPECT_EQ(result.details().at("vertices_off_own_labels"), 4);
   for (const LabelValue unknown : {LabelValue{3}, LabelValue{-1}, LabelValue{1} << 40}) {
     mesh.cell_labels = {unknown};
     EXPECT_EQ(surface_vertices_of(mesh, image).num_violations, 4U);
@@ -163,7 +164,7 @@ TEST(SurfaceVertices, LabelsOfFacetsAreWithinReach) {
   EXPECT_EQ(check_surface_vertices(mesh, mapped_adjacency(mesh), image, Options{}).verdict, Verdict::kPass)
       << "how far a label may reach follows from delta alone";
   mesh.cell_labels = {1};
-  EXPECT_EQ(surface_vertices_of(mesh, image, 0.1).details.at("vertices_off_own_labels"), 0);
+  EXPECT_EQ(surface_vertices_of(mesh, image, 0.1).details().at("vertices_off_own_labels"), 0);
 }
 
 TEST(SurfaceVertices, ThreadsChangeNothing) {
