@@ -2,6 +2,15 @@
 
 find_package(Threads REQUIRED)
 
+# A launcher of the command line or the environment has precedence, also an empty one.
+find_program(PODM_CCACHE_PROGRAM ccache)
+mark_as_advanced(PODM_CCACHE_PROGRAM)
+foreach(language C CXX)
+  if(PODM_CCACHE AND PODM_CCACHE_PROGRAM AND NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+    set(CMAKE_${language}_COMPILER_LAUNCHER ${PODM_CCACHE_PROGRAM})
+  endif()
+endforeach()
+
 add_library(podm_flags INTERFACE)
 target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
                                             -Wshadow -Werror
