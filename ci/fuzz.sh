@@ -1,14 +1,14 @@
 #!/bin/sh
 # Usage: ci/fuzz.sh [--merge] [TARGET...]
 # Builds the libFuzzer targets and runs each target (all, or those given) for FUZZ_SECONDS (15), or for FUZZ_RUNS
-# executions. A run starts from the folder corpus/TARGET beside the target's source. This corpus takes every branch
-# that was ever taken. Prints a table of executions at the end. On a finding the script exits with 1; the input stays in
+# executions. A run starts from the folder corpus/TARGET beside the target's source and from the inputs that earlier
+# runs learnt. Prints a table of executions at the end. On a finding the script exits with 1; the input stays in
 # build-fuzz/findings/. FUZZ_SEED (1) seeds the inputs, therefore a change that finds nothing new gives the same result
 # tomorrow. FUZZ_SEED=0 draws a new seed each time.
 #
 # New inputs that take new branches stay in build-fuzz/corpus/. With --merge nothing is fuzzed: the corpora of the tree
-# are rebuilt from their own inputs and from build-fuzz/corpus/, as the fewest and shortest inputs that take all
-# branches. Named inputs stay, the other inputs are named by their hash.
+# are rebuilt from their own inputs and from build-fuzz/corpus/. ci/choose_inputs keeps the named inputs and, up to
+# MOST_INPUTS (30) in all, the inputs that take most branches. The other inputs stay in build-fuzz/corpus/.
 set -eu
 cd "$(dirname "$0")/.."
 is_merge=""
@@ -43,13 +43,16 @@ files_in() { find "$1" -type f | wc -l; }
 bytes_in() { find "$1" -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum + 0 }'; }
 statistic() { sed -n "s/^stat::$1: *//p" "$2"; }
 
-# Inputs named by their hash are removed from the seeds and compete again with the inputs that fuzzing found.
+# Lists the branches that each input takes. libFuzzer would add its own choice to the first folder, which is scratch.
 merge() {
-  target=$1 seeds=$(corpus_of "$1") found=$build/corpus/$1
-  mkdir -p "$seeds" "$found"
-  find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$found"
-  $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$found" \
+  target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1 control=$build/log/$1.control
+  mkdir -p "$seeds" "$learnt" "$TMPDIR/merged/$1"
+  find "$seeds" -type f -exec cp -n -t "$learnt" {} +
+  rm -f "$control"
+  $build/bin/"$target" -set_cover_merge=1 -merge_control_file="$control" -use_counters=0 -print_funcs=0 \
+    -max_len=$longest -timeout=30 "$TMPDIR/merged/$1" "$seeds" "$learnt" \
     > $build/log/merge 2>&1 || { tail -n 30 $build/log/merge; exit 1; }
+  ci/choose_inputs "$control" "$seeds" --most "${MOST_INPUTS:-30}"
 }
 
 fuzz() {

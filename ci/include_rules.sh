@@ -21,8 +21,10 @@ may_include() {
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo "$store" ;;
-    mesher/run) echo mesher/prediction mesher/replay mesher/optimize mesher/algorithms mesher/io mesher/files "$store" ;;
-    mesher/distributed) echo mesher/run mesher/prediction mesher/replay mesher/algorithms mesher/io mesher/files "$store" ;;
+    mesher/run) echo mesher/prediction mesher/replay mesher/optimize mesher/algorithms mesher/io mesher/files \
+      "$store" ;;
+    mesher/distributed) echo mesher/run mesher/prediction mesher/replay mesher/algorithms mesher/io mesher/files \
+      "$store" ;;
     mesher/cli/foreign_mesh) echo mesher/cli mesher/io mesher/geometry mesher/include verifiers ;;  # podm convert
     mesher/*) echo "mesher/* podm" ;;  # the command line, tests of the whole mesher
     examples/*) echo mesher/include podm ;;
@@ -32,8 +34,8 @@ may_include() {
     harness/rows) echo harness/options harness/process harness/ground ;;
     harness/machine) echo harness/rows harness/options harness/process harness/ground mesher/runtime ;;
     harness/trials) echo harness/machine harness/rows harness/options harness/process harness/ground mesher/runtime ;;
-    harness/experiments | harness/gate) echo harness/trials harness/machine harness/rows harness/options harness/process \
-      harness/ground mesher/runtime ;;
+    harness/experiments | harness/gate) echo harness/trials harness/machine harness/rows harness/options \
+      harness/process harness/ground mesher/runtime ;;
     harness/*) echo "harness/* mesher/runtime" ;;  # the program, tests
     verifiers) ;;  # the verifiers know the mesher only by its files
   esac

@@ -1,6 +1,15 @@
-# Compile options of all targets, and functions that declare a test and a fuzzer.
+# Compile options of all targets, and functions that declare a test and a fuzz target.
 
 find_package(Threads REQUIRED)
+
+# A launcher of the command line or the environment has precedence, also an empty one.
+find_program(PODM_CCACHE_PROGRAM ccache)
+mark_as_advanced(PODM_CCACHE_PROGRAM)
+foreach(language C CXX)
+  if(PODM_CCACHE AND PODM_CCACHE_PROGRAM AND NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+    set(CMAKE_${language}_COMPILER_LAUNCHER ${PODM_CCACHE_PROGRAM})
+  endif()
+endforeach()
 
 add_library(podm_flags INTERFACE)
 target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
@@ -70,16 +79,28 @@ function(podm_add_python_test name)
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()
 
-# podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the libFuzzer program of fuzz/NAME.cpp and
-# SOURCES. It is guided by the branches taken in its own sources and in the libraries LEARN.
+# The main program of a fuzz target that is not linked with libFuzzer.
+add_library(podm_replay OBJECT EXCLUDE_FROM_ALL ci/replay_corpus.cpp)
+target_link_libraries(podm_replay PRIVATE podm_flags)
+
+# podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the fuzz target of fuzz/NAME.cpp and SOURCES.
+# With PODM_BUILD_FUZZERS it is a libFuzzer program, guided by the branches taken in its own sources and in the
+# libraries LEARN. In any other build the ctest case fuzz.NAME runs the target on each file of fuzz/corpus/NAME.
 function(podm_add_fuzzer name)
-  if(NOT PODM_BUILD_FUZZERS)
+  if(NOT PODM_BUILD_FUZZERS AND NOT PODM_BUILD_TESTS)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;LEARN" ${ARGN})
   add_executable(${name} EXCLUDE_FROM_ALL fuzz/${name}.cpp ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/ci)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags)
+  if(NOT PODM_BUILD_FUZZERS)
+    target_link_libraries(${name} PRIVATE podm_replay)
+    add_dependencies(tests ${name})
+    add_test(NAME fuzz.${name} COMMAND ${name} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
+    set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 300)
+    return()
+  endif()
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
   foreach(target ${name} ${ARG_LEARN})
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
