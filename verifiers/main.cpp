@@ -248,7 +248,8 @@ void finish_options(Command& command) {
       throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
     options.radius_of[label] = radius;
   }
-  for (const std::string& text : command.size_near) options.size_near.push_back(parse_size_near(text));
+  for (const std::string& text : command.size_near)
+    options.interface_sizes.push_back(parse_interface_size(text));
   if (!command.labels.empty()) options.selection.keep = parse_label_ranges(command.labels, "--labels");
   if (!command.drop.empty()) options.selection.drop = parse_label_ranges(command.drop, "--drop");
   for (const std::string& text : command.merges) options.selection.merges.push_back(parse_merge(text));

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "image/interface_size.h"
 #include "image/label_selection.h"
-#include "image/size_near.h"
 #include "mesh.h"
 
 namespace podm::verify {
@@ -21,11 +21,11 @@ struct Options {
   std::vector<std::string> claims;  ///< names asked for; empty: all whose inputs are given
   double radius_edge_bound = 1.93;
   double angle_bound_deg = 30;
-  std::optional<double> radius_mm;         ///< circumradius bound r_t of every label not in `radius_of`
-  std::map<LabelValue, double> radius_of;  ///< label -> mm
-  std::string size_image_path;             ///< image of local bounds; empty: none
-  double size_factor = 1;                  ///< factor of these local bounds
-  std::vector<SizeNear> size_near;         ///< bounds near interfaces of the image
+  std::optional<double> radius_mm;             ///< circumradius bound r_t of every label not in `radius_of`
+  std::map<LabelValue, double> radius_of;      ///< label -> mm
+  std::string size_image_path;                 ///< image of local bounds; empty: none
+  double size_factor = 1;                      ///< factor of these local bounds
+  std::vector<InterfaceSize> interface_sizes;  ///< bounds near interfaces of the image
   std::optional<double> grade;  ///< growth of bounds, mm per mm of distance; none: bounds do not extend
   std::optional<double> min_dihedral_deg, max_dihedral_deg;
   /// Fidelity: 95 % of either surface lies within this many voxels of the other. All of the mesh's surface

@@ -25,7 +25,7 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
       return !options.image_path.empty();
     case Needs::kBound:
       return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty() ||
-             !options.size_near.empty();
+             !options.interface_sizes.empty();
     case Needs::kDihedralBound:
       return options.min_dihedral_deg || options.max_dihedral_deg || mesh.promised_dihedral_deg;
   }

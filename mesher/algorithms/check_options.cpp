@@ -21,15 +21,16 @@ bool has_value(Labels::const_iterator begin, Labels::const_iterator end, std::ui
   return std::any_of(begin, end, [value](const Label& label) { return label.value == value; });
 }
 
-void check_near(const LabelImage& image, const std::vector<SizeNear>& near) {
-  for (const SizeNear& each : near) {
+void check_near(const LabelImage& image, const std::vector<InterfaceSize>& near) {
+  for (const InterfaceSize& each : near) {
     if (!(std::isfinite(each.radius_mm) && each.radius_mm > 0) ||
         !(std::isfinite(each.width_mm) && each.width_mm > 0))
-      throw InputError("the size near an interface and its width must be positive numbers of mm");
+      throw InputError("the size at an interface and its width must be positive numbers of mm");
     for (const auto& side : each.labels)
       for (const std::uint32_t value : side)
         if (!has_value(image.labels.begin(), image.labels.end(), value))
-          throw InputError(fmt::format("size near label {}: the image has no such label", value));
+          throw InputError(
+              fmt::format("size at the interface of label {}: the image has no such label", value));
   }
 }
 

@@ -49,13 +49,13 @@ std::string text_of(const std::vector<std::uint32_t>& values) {
 }
 
 // Throws InputError if the labels do not touch, or one label is on both sides.
-InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, int threads) {
+InterfaceDistances distances_to(const LabelImage& image, const InterfaceSize& near, int threads) {
   std::vector<unsigned char> side_of_label(image.labels.size(), 0);
   for (std::size_t label = 0; label < image.labels.size(); ++label)
     for (unsigned char side = 0; side < 2; ++side)
       if (std::count(near.labels[side].begin(), near.labels[side].end(), image.labels[label].value) > 0) {
         if (side_of_label[label] != 0)
-          throw InputError(fmt::format("size near labels {} and {}: label {} is on both sides",
+          throw InputError(fmt::format("sizes at the interface of {} and {}: label {} is on both sides",
                                        text_of(near.labels[0]), text_of(near.labels[1]),
                                        image.labels[label].value));
         side_of_label[label] = static_cast<unsigned char>(side + 1);
@@ -65,7 +65,7 @@ InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, i
   const double reach_mm = near.width_mm + 2 * diagonal_mm(image);
   auto distances = interface_distances(image, side_of_label, reach_mm, threads);
   if (!distances)
-    throw InputError(fmt::format("size near labels {} and {}: they have no voxels that touch",
+    throw InputError(fmt::format("sizes at the interface of {} and {}: they have no voxels that touch",
                                  text_of(near.labels[0]), text_of(near.labels[1])));
   return std::move(*distances);
 }
@@ -164,7 +164,8 @@ void bound_by_size_image(const LabelImage& image, const SizeOptions& sizes, cons
   });
 }
 
-void bound_near(const InterfaceDistances& distances, const SizeNear& near, double slope, Graded& graded) {
+void bound_near(const InterfaceDistances& distances, const InterfaceSize& near, double slope,
+                Graded& graded) {
   for_each_voxel(distances.size, [&](std::array<double, 3> voxel, std::size_t number) {
     for (std::size_t axis = 0; axis < 3; ++axis) voxel[axis] += distances.first[axis];
     const double beyond_mm = std::max(0.0, distances.distance_mm[number] - near.width_mm);
@@ -203,7 +204,7 @@ std::shared_ptr<const SizeGrid> make_size_grid(const LabelImage& image, const Si
     if (graded) bound_by_size_image(image, sizes, by_image->radius_mm, *graded);
   }
   std::vector<NearInterface> near;
-  for (const SizeNear& asked : sizes.near) {
+  for (const InterfaceSize& asked : sizes.near) {
     InterfaceDistances distances = distances_to(image, asked, threads);
     if (graded) bound_near(distances, asked, sizes.grade, *graded);
     near.emplace_back(

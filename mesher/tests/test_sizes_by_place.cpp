@@ -266,7 +266,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   apart.sizes.near[0].labels[1] = {10};
   EXPECT_NE(refusal(apart).find("10 is on both sides"), std::string::npos);
   apart.sizes.near[0].labels[1] = {77};
-  EXPECT_NE(refusal(apart).find("size near label 77"), std::string::npos);
+  EXPECT_NE(refusal(apart).find("interface of label 77"), std::string::npos);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class SizeBounds {
   SizeBounds(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options)
       : mesh_(mesh), options_(options) {
     if (sizes != nullptr) field_.emplace(*sizes, options.size_factor, mesh.space);
-    for (const SizeNear& near : options.size_near) near_.emplace_back(*image, near);
+    for (const InterfaceSize& near : options.interface_sizes) near_.emplace_back(*image, near);
     if (options.grade) graded_.emplace(*image, sizes, near_, options);
     if (image != nullptr) to_voxels_.emplace(image->voxel_to_ras, mesh.space);
   }
@@ -151,7 +151,7 @@ Tally empty_tally(const Options& options, const SizeImage* sizes) {
     for (const float radius : sizes->radius_mm)
       largest = std::max(largest, options.size_factor * static_cast<double>(radius));
   for (const auto& [label, radius] : options.radius_of) largest = std::max(largest, radius);
-  for (const SizeNear& near : options.size_near) largest = std::max(largest, near.radius_mm);
+  for (const InterfaceSize& near : options.interface_sizes) largest = std::max(largest, near.radius_mm);
   Tally empty;
   empty.bins.emplace_back("circumradius", "mm", 0, largest, 50);
   return empty;
@@ -166,9 +166,9 @@ ClaimResult not_run(const std::string& reason) {
 
 std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, const SizeImage* sizes,
                                        const Options& options) {
-  if (!options.radius_mm && options.radius_of.empty() && options.size_near.empty() && sizes == nullptr)
+  if (!options.radius_mm && options.radius_of.empty() && options.interface_sizes.empty() && sizes == nullptr)
     return "no bound given (--radius, --radius-of, --size-image, --size-near)";
-  const bool needs_image = !options.size_near.empty() || options.grade;
+  const bool needs_image = !options.interface_sizes.empty() || options.grade;
   if (needs_image && image == nullptr) return "no image given (--image), which --size-near and --grade need";
   if (mesh.space != Space::kVoxel) return std::nullopt;
   if (sizes != nullptr) return "coordinates are voxel indices, possibly of another image than the size image";

@@ -12,14 +12,14 @@ namespace podm::verify {
 
 namespace {
 
-[[noreturn]] void refuse_near(const Image& image, const SizeNear& near, const std::string& fault) {
+[[noreturn]] void refuse_near(const Image& image, const InterfaceSize& near, const std::string& fault) {
   refuse(image.path, fmt::format("--size-near {}: {}", near.text, fault));
 }
 
 // The side of an interface that each voxel is on: 1, 2, or 0 for neither.
 class Sides {
  public:
-  Sides(const Image& image, const SizeNear& near) : size_(image.size) {
+  Sides(const Image& image, const InterfaceSize& near) : size_(image.size) {
     check(image, near);
     const auto side_of = [&](std::uint32_t label) -> unsigned char {
       for (unsigned char side = 0; side < 2; ++side)
@@ -44,7 +44,7 @@ class Sides {
   }
 
  private:
-  static void check(const Image& image, const SizeNear& near) {
+  static void check(const Image& image, const InterfaceSize& near) {
     for (const std::uint32_t label : near.labels[0])
       if (std::count(near.labels[1].begin(), near.labels[1].end(), label) > 0)
         refuse_near(image, near, fmt::format("label {} is on both sides", label));
@@ -59,7 +59,7 @@ class Sides {
   std::vector<unsigned char> sides_;
 };
 
-std::vector<VoxelFace> find_faces(const Image& image, const SizeNear& near) {
+std::vector<VoxelFace> find_faces(const Image& image, const InterfaceSize& near) {
   const Sides side(image, near);
   std::vector<VoxelFace> faces;
   const auto [nx, ny, nz] = image.size;
@@ -89,8 +89,8 @@ double distance(const Bounds& box, const Point& p) {
 
 }  // namespace
 
-InterfaceFaces::InterfaceFaces(const Image& image, const SizeNear& near)
-    : near_(near), spacing_(image.spacing), faces_(find_faces(image, near)), tree_(boxes()) {}
+InterfaceFaces::InterfaceFaces(const Image& image, const InterfaceSize& near)
+    : bound_(near), spacing_(image.spacing), faces_(find_faces(image, near)), tree_(boxes()) {}
 
 Point InterfaceFaces::in_mm(const Point& voxel) const {
   return {voxel[0] * spacing_[0], voxel[1] * spacing_[1], voxel[2] * spacing_[2]};
@@ -126,7 +126,7 @@ T InterfaceFaces::excess(const VoxelFace& face, const CellPoints& p, const Voxel
     const T along = T(spacing_[axis]) * beyond;
     sum = sum + along * along;
   }
-  return T(near_.width_mm) * T(near_.width_mm) - sum;
+  return T(bound_.width_mm) * T(bound_.width_mm) - sum;
 }
 
 // Doubles decide only cases that are further from the width than the rounding of the circumcenter and of all
@@ -134,7 +134,7 @@ T InterfaceFaces::excess(const VoxelFace& face, const CellPoints& p, const Voxel
 bool InterfaceFaces::contains(const CellPoints& p, const Circumsphere& sphere, const VoxelMap& to_voxels,
                               std::uint64_t& num_exact) const {
   const Point center = in_mm(sphere.voxel);
-  const double width_mm = near_.width_mm;
+  const double width_mm = bound_.width_mm;
   const double margin_mm = 1e-6 * (spacing_[0] + spacing_[1] + spacing_[2]) + 1e-9 * width_mm;
   double limit_mm = width_mm + margin_mm;
   bool is_found = false;

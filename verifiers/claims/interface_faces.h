@@ -8,7 +8,7 @@
 #include "claims/circumsphere.h"
 #include "geometry/box_tree.h"
 #include "image/image.h"
-#include "image/size_near.h"
+#include "image/interface_size.h"
 
 namespace podm::verify {
 
@@ -25,9 +25,9 @@ class InterfaceFaces {
  public:
   /// Throws InputError if the image does not have a label, if a label is on both sides, or if the sides do
   /// not touch.
-  InterfaceFaces(const Image& image, const SizeNear& near);
+  InterfaceFaces(const Image& image, const InterfaceSize& near);
 
-  const SizeNear& near() const { return near_; }
+  const InterfaceSize& near() const { return bound_; }
   std::size_t size() const { return faces_.size(); }
   /// True if the cell's circumcenter is within the width, decided exactly. `sphere` is the cell's
   /// circumsphere.
@@ -43,7 +43,7 @@ class InterfaceFaces {
   template <class T>
   T excess(const VoxelFace& face, const CellPoints& p, const VoxelMap& to_voxels) const;
 
-  SizeNear near_;
+  InterfaceSize bound_;
   std::array<double, 3> spacing_;
   std::vector<VoxelFace> faces_;
   BoxTree tree_;

@@ -56,7 +56,7 @@ Json size_image_of(const Inputs& inputs, const Options& options) {
 
 Json size_near_of(const Options& options) {
   Json json = Json::array();
-  for (const SizeNear& near : options.size_near)
+  for (const InterfaceSize& near : options.interface_sizes)
     json.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
   return json;
 }

@@ -61,9 +61,9 @@ std::map<std::uint32_t, double> lengths_by_value(
   return by_value;
 }
 
-std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
-                                    const std::string& image_path) {
-  std::vector<SizeNear> by_value;
+std::vector<InterfaceSize> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
+                                         const std::string& image_path) {
+  std::vector<InterfaceSize> by_value;
   for (const NearLabels& asked : near)
     by_value.push_back({.labels = {values_called(asked.labels[0], image.labels, image_path),
                                    values_called(asked.labels[1], image.labels, image_path)},

@@ -29,8 +29,8 @@ std::map<std::uint32_t, double> lengths_by_value(
     const std::string& image_path);
 
 /// Returns the bounds with labels by value, including the background. Throws as lengths_by_value() does.
-std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
-                                    const std::string& image_path);
+std::vector<InterfaceSize> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
+                                         const std::string& image_path);
 
 /// Returns the volume of a voxel in the world: the product of the spacings only where the axes are
 /// orthogonal.

@@ -73,7 +73,7 @@ std::vector<std::string> size_options(const MeshRun& run) {
     if (const double factor = run.report.size_image_factor; factor != 1)
       add("--size-factor", fmt::format("{}", factor));
   }
-  for (const SizeNear& near : sizes.near)
+  for (const InterfaceSize& near : sizes.near)
     add("--size-near", fmt::format("{},{}={}:{}", text_of_side(near.labels[0]), text_of_side(near.labels[1]),
                                    near.radius_mm, near.width_mm));
   if (sizes.grade > 0 && !options.empty()) add("--grade", fmt::format("{}", sizes.grade));

@@ -125,10 +125,7 @@ std::string shown(Choice value) {
   return to_string(value);
 }
 template <class Other>
-  requires(!std::integral<Other> && !Named<Other>)
-std::string shown(const Other&) {
-  return "";
-}
+requires(!std::integral<Other> && !Named<Other>) std::string shown(const Other&) { return ""; }
 
 /// Stores the text given to the option of this name, or throws InputError.
 using Setter = std::function<void(const std::string& text, const std::string& name)>;

@@ -9,8 +9,8 @@
 
 namespace podm::cli {
 
-/// Returns the bytes that the process may use: the limit given, otherwise kPercentOfAvailableMemory of the memory
-/// that is available now, before the image is read.
+/// Returns the bytes that the process may use: the limit given, otherwise kPercentOfAvailableMemory of the
+/// memory that is available now, before the image is read.
 std::uint64_t memory_limit_bytes(const MeshCommand& command);
 /// Returns the part of the limit that the image may take during reading.
 std::uint64_t bytes_for_image(std::uint64_t limit_bytes);

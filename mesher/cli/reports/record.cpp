@@ -57,7 +57,7 @@ Json size_image_of(const MeshRun& run) {
 
 Json size_near_of(const SizeOptions& sizes) {
   Json all = Json::array();
-  for (const SizeNear& near : sizes.near)
+  for (const InterfaceSize& near : sizes.near)
     all.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
   return all;
 }

@@ -139,7 +139,7 @@ std::string sizes_by_place_text(const MeshRun& run) {
   std::vector<std::string> parts;
   if (sizes.image != nullptr)
     parts.push_back(fmt::format("at most {:.4g} times {}", run.report.size_image_factor, sizes.image->path));
-  for (const SizeNear& near : sizes.near)
+  for (const InterfaceSize& near : sizes.near)
     parts.push_back(fmt::format("{:.4g} mm within {:.4g} mm of labels {} | {}", near.radius_mm, near.width_mm,
                                 fmt::join(near.labels[0], ", "), fmt::join(near.labels[1], ", ")));
   if (sizes.grade > 0) parts.push_back(fmt::format("growing by at most {:.4g} mm per mm", sizes.grade));

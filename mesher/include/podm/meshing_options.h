@@ -24,7 +24,7 @@ inline constexpr int kMostThreads = 1024;
 /// A bound on the cells whose circumcenter is within a width of the interface between two sets of labels. The
 /// interface here consists of the faces between their voxels. Labels are given by value; the background has
 /// its own value.
-struct SizeNear {
+struct InterfaceSize {
   std::array<std::vector<std::uint32_t>, 2> labels;  ///< one or more labels on either side
   double radius_mm = 0;                              ///< largest circumradius, mm
   double width_mm = 0;                               ///< largest distance from the interface, mm
@@ -40,7 +40,7 @@ struct SizeOptions {
   std::shared_ptr<const SizeImage> image = nullptr;
   /// Factor of all radii of the image. A target number of elements determines the factor itself.
   double image_factor = 1;
-  std::vector<SizeNear> near = {};
+  std::vector<InterfaceSize> near = {};
   /// Largest growth of bounds, mm per mm of distance. 0: unlimited. Distances are measured over voxels: a
   /// bound is the largest that grows no faster from voxel to voxel, or up to an eighth of the growth less
   /// where voxels are cubes (sizing/graded_grid.h).

@@ -18,7 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Options options_near(std::vector<std::string> near, std::optional<double> grade = std::nullopt) {
   Options options = two_threads();
-  for (const std::string& text : near) options.size_near.push_back(parse_size_near(text));
+  for (const std::string& text : near) options.interface_sizes.push_back(parse_interface_size(text));
   options.grade = grade;
   return options;
 }
@@ -71,7 +71,7 @@ void for_each_voxel(const std::array<int, 3>& size, int margin, const Use& use) 
 
 // Returns the squared distance of the nearest face between voxels of either side, in any of the types.
 template <class T>
-T squared_distance(const Image& image, const SizeNear& near, const Vector<T>& voxel) {
+T squared_distance(const Image& image, const InterfaceSize& near, const Vector<T>& voxel) {
   std::optional<T> least;
   for_each_voxel(image.size, 1, [&](const std::array<int, 3>& v) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,7 +93,7 @@ T squared_distance(const Image& image, const SizeNear& near, const Vector<T>& vo
   return *least;
 }
 
-std::vector<CellId> over_near_by_definition(const Mesh& mesh, const Image& image, const SizeNear& near) {
+std::vector<CellId> over_near_by_definition(const Mesh& mesh, const Image& image, const InterfaceSize& near) {
   const VoxelMap to_voxels(image.voxel_to_ras, mesh.space);
   const Rational radius(near.radius_mm), width(near.width_mm);
   std::vector<CellId> over;
@@ -117,7 +117,7 @@ TEST(SizeInImage, IsBoundedNearAnInterfaceAsAllOfItsFacesSay) {
         const Mesh mesh = random_cells(image, lattice, random);
         const Options options = options_near({text});
         const ClaimResult result = check_size(mesh, &image, nullptr, options);
-        const auto over = over_near_by_definition(mesh, image, options.size_near[0]);
+        const auto over = over_near_by_definition(mesh, image, options.interface_sizes[0]);
         EXPECT_EQ(result.bad_cells, over) << text;
         EXPECT_GT(over.size(), 0U);
         EXPECT_LT(over.size(), mesh.cells.size());
@@ -138,7 +138,7 @@ TEST(SizeInImage, MeasuresTheNearestFace) {
   std::uniform_real_distribution<double> coordinate(-4, 10);
   for (const auto& affine : kAffines) {
     const Image image = random_image(affine, random);
-    const SizeNear near = parse_size_near("1,2=1");
+    const InterfaceSize near = parse_interface_size("1,2=1");
     const InterfaceFaces faces(image, near);
     for (int repeat = 0; repeat < 200; ++repeat) {
       const Point voxel{coordinate(random), coordinate(random), coordinate(random)};
@@ -155,7 +155,7 @@ TEST(SizeInImage, HoldsAtTheVeryWidthAndNotAnUlpBeyond) {
   const Mesh mesh = corner(2, 2, 2);  // circumcenter (1, 1, 1), 2.5 from the interface, circumradius sqrt(3)
   Options options = options_near({"1,2=1.7:2.5"});
   EXPECT_EQ(verdict_of(mesh, image, options), Verdict::kFail);
-  options.size_near[0].width_mm = std::nextafter(2.5, 0);
+  options.interface_sizes[0].width_mm = std::nextafter(2.5, 0);
   EXPECT_EQ(verdict_of(mesh, image, options), Verdict::kPass);
   EXPECT_EQ(verdict_of(mesh, image, options_near({"2,1=1.74:9"})), Verdict::kPass) << "it is small enough";
   EXPECT_EQ(verdict_of(mesh, image, options_near({"2,1=1.74:9", "1,0=1.7:1.5"})), Verdict::kFail)
@@ -231,7 +231,7 @@ double grown_by_definition(const Point& voxel, const Image& image, const SizeIma
       if (nearest[axis] < 0 || nearest[axis] >= image.size[axis]) return;
     bound(radius, 3 * distance(at, point(nearest)) + distance(voxel, point(nearest)), 0.5);
   });
-  for (const SizeNear& near : options.size_near) {
+  for (const InterfaceSize& near : options.interface_sizes) {
     const double far = std::sqrt(squared_distance<double>(image, near, voxel));
     bound(near.radius_mm, std::max(0.0, far - near.width_mm), 1.5);
   }
@@ -258,8 +258,8 @@ TEST(SizeInImage, GrowsFromVoxelsSizesAndInterfacesAsStated) {
       Options options = options_near({"1,2=0.5:0.25", "3,0=0.75"}, grade);
       options.radius_of = {{2, 0.4}, {3, 1.5}};
       options.size_factor = 0.7;
-      const std::vector<InterfaceFaces> near{InterfaceFaces(image, options.size_near[0]),
-                                             InterfaceFaces(image, options.size_near[1])};
+      const std::vector<InterfaceFaces> near{InterfaceFaces(image, options.interface_sizes[0]),
+                                             InterfaceFaces(image, options.interface_sizes[1])};
       const GradedSizes graded(image, &sizes, near, options);
       const ImageFrame frame(image, Space::kRas);
       const Mesh mesh = random_cells(image, false, random);
@@ -343,7 +343,7 @@ std::string fault_of(const std::string& text) {
     Image image = halves();
     image.path = "halves.nii";
     image.voxels[0] = 3;
-    InterfaceFaces(image, parse_size_near(text));
+    InterfaceFaces(image, parse_interface_size(text));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -1,4 +1,4 @@
-#include "image/size_near.h"
+#include "image/interface_size.h"
 
 #include <fmt/format.h>
 
@@ -40,15 +40,15 @@ std::vector<std::uint32_t> parse_side(std::string_view side, std::string_view te
 
 }  // namespace
 
-SizeNear parse_size_near(const std::string& text) {
+InterfaceSize parse_interface_size(const std::string& text) {
   const std::string_view all = text;
   const std::size_t equals = all.find('='), comma = all.substr(0, equals).find(',');
   if (equals == std::string_view::npos || comma == std::string_view::npos) refuse_text(text);
   const std::string_view lengths = all.substr(equals + 1);
   const std::size_t colon = lengths.find(':');
-  SizeNear near{.text = text,
-                .labels = {parse_side(all.substr(0, comma), text),
-                           parse_side(all.substr(comma + 1, equals - comma - 1), text)}};
+  InterfaceSize near{.text = text,
+                     .labels = {parse_side(all.substr(0, comma), text),
+                                parse_side(all.substr(comma + 1, equals - comma - 1), text)}};
   near.radius_mm = parse_length(lengths.substr(0, colon), text);
   near.width_mm =
       colon == std::string_view::npos ? near.radius_mm : parse_length(lengths.substr(colon + 1), text);

@@ -8,7 +8,7 @@
 
 namespace podm::verify {
 
-struct SizeNear {
+struct InterfaceSize {
   std::string text;                                  ///< as in the option
   std::array<std::vector<std::uint32_t>, 2> labels;  ///< on either side, one or more; 0 is the background
   double radius_mm = 0, width_mm = 0;
@@ -16,6 +16,6 @@ struct SizeNear {
 
 /// Parses "3,0=1" or "2+3,4=0.5:2": labels of either side, a length in mm and a width. The width is the
 /// length if it is not given. Throws InputError.
-SizeNear parse_size_near(const std::string& text);
+InterfaceSize parse_interface_size(const std::string& text);
 
 }  // namespace podm::verify
