@@ -254,7 +254,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   nan.radius_mm[5] = std::nanf("");
   EXPECT_NE(refusal(with(nan)).find("sizes.nii: radii must be finite"), std::string::npos);
   for (const double grade : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-    EXPECT_NE(refusal(near_plane(grade)).find("grade must be a positive number"), std::string::npos);
+    EXPECT_NE(refusal(near_plane(grade)).find("is not a positive number"), std::string::npos);
   MeshingOptions apart = near_plane(0);
   const LabelImage separate = make_image({20, 20, 20}, {1, 1, 1}, 2, [](int i, int, int) {
     return i < 8 ? 1 : i < 12 ? 0 : 2;
