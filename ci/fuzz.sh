@@ -47,11 +47,11 @@ statistic() { sed -n "s/^stat::$1: *//p" "$2"; }
 merge() {
   target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1 control=$build/log/$1.control
   mkdir -p "$seeds" "$learnt" "$TMPDIR/merged/$1"
-  find "$seeds" -type f -exec cp -n -t "$learnt" {} +
   rm -f "$control"
   $build/bin/"$target" -set_cover_merge=1 -merge_control_file="$control" -use_counters=0 -print_funcs=0 \
     -max_len=$longest -timeout=30 "$TMPDIR/merged/$1" "$seeds" "$learnt" \
     > $build/log/merge 2>&1 || { tail -n 30 $build/log/merge; exit 1; }
+  find "$seeds" -type f -exec cp -n -t "$learnt" {} +
   ci/choose_inputs "$control" "$seeds" --most "${MOST_INPUTS:-30}"
 }
 
