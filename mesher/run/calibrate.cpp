@@ -19,7 +19,6 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
 }
 
-constexpr std::size_t kMostTrialMeshes = 5;
 constexpr double kShareOfTolerance = 0.9;  // the search aims at a smaller tolerance than promised
 
 bool is_near(std::uint64_t cells, const SizeOptions& sizes) {
@@ -45,7 +44,7 @@ Refinement refine_to_target(const LabelImage& image, const Isosurface& isosurfac
     const Clock::time_point label_start = Clock::now();
     const std::uint64_t cells = label_cells(*refinement.mesh, isosurface, threads);
     const bool is_met = is_near(cells, sizes);
-    if (is_met || calibration.meshes.size() == kMostTrialMeshes ||
+    if (is_met || calibration.meshes.size() + 1 == static_cast<std::size_t>(sizes.target_meshes) ||
         refinement.stop_reason != StopReason::kComplete ||
         !search.learn(std::max(1.0, static_cast<double>(cells)))) {
       if (!is_met)

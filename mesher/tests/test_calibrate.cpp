@@ -54,6 +54,17 @@ MeshingOptions exact_target(std::uint64_t cells) {
   return options;
 }
 
+TEST(Calibrated, MakesNoMoreMeshesThanAskedFor) {
+  const LabelImage image = ball(40, 15);
+  for (const int most : {1, 2}) {
+    MeshingOptions options = exact_target(20'000);
+    options.sizes.target_meshes = most;
+    const MeshingResult made = mesh_image(image, options);
+    EXPECT_LE(made.report.calibration->meshes.size() + 1, static_cast<std::size_t>(most));
+    EXPECT_FALSE(made.mesh.cells.empty());
+  }
+}
+
 LabelImage noise() {
   std::mt19937 random(4);
   return make_image({24, 24, 24}, {1, 1, 1}, 3,

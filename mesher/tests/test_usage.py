@@ -8,7 +8,7 @@ from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
-             "--target-elements", "--target-tolerance", "--smooth", "--min-dihedral", "--labels", "--drop-islands",
+             "--target-elements", "--target-tolerance", "--target-meshes", "--smooth", "--min-dihedral", "--labels", "--drop-islands",
              "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",

@@ -53,6 +53,8 @@ struct SizeOptions {
   std::uint64_t target_elements = 0;
   /// Largest deviation of the number of cells from the target, percent of the target.
   double target_tolerance_percent = 5;
+  /// Largest number of meshes made for the target; 1: the first mesh is taken, whatever its number of cells.
+  int target_meshes = 6;
 
   static constexpr auto options() {
     using S = SizeOptions;
@@ -92,6 +94,15 @@ struct SizeOptions {
                 .uses = kInAll | kInPlan,
                 .most = 100,
                 .quantity = "percentage",
+                .needs = "target-elements"}),
+        option(&S::target_meshes,
+               {.name = "target-meshes",
+                .type = "N",
+                .group = kSize,
+                .help = "largest number of meshes made for the target; 1 takes the predicted radius",
+                .uses = kInPodm | kInPython,
+                .not_on_ranks = "the search for the radius needs the whole mesh several times",
+                .most = 100,
                 .needs = "target-elements"}),
         option(&S::grade, {.name = "grade",
                            .type = "G",
