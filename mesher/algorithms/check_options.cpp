@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <type_traits>
 
 #include "algorithms/team_size.h"
 #include "geometry/affine.h"
@@ -74,10 +75,10 @@ void check_crossover(const MeshingOptions& options) {
 // Numbers are in the ranges of their declarations; 0 is the default of many, outside of the range.
 void check_ranges(const MeshingOptions& options) {
   for_each_option(options, []<class Value>(const Declaration& of, const Value& value) {
-    if constexpr (std::same_as<Value, double>) {
+    if constexpr (std::is_arithmetic_v<Value> && !std::same_as<Value, bool>) {
       const bool is_unset = value == 0 && *of.unset != 0;
-      if (!is_unset && !is_in_range(value, of))
-        throw InputError(fmt::format("{}: {:g} is not a {}", of.name, value, range_text(of)));
+      if (!is_unset && !is_in_range(static_cast<double>(value), of))
+        throw InputError(fmt::format("{}: {} is not a {}", of.name, value, range_text(of)));
     }
   });
 }

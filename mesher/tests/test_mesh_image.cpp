@@ -249,6 +249,11 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
   MeshingOptions anything = radius(1);
   anything.sizes.target_tolerance_percent = 101;
   EXPECT_THROW(mesh_image(image, anything), InputError);
+  for (const int meshes : {-1, 0, 101}) {
+    MeshingOptions never = radius(1);
+    never.sizes.target_meshes = meshes;
+    EXPECT_THROW(mesh_image(image, never), InputError) << meshes;
+  }
   MeshingOptions absent = radius(1);
   absent.sizes.radius_of_mm[77] = 1;
   EXPECT_THROW(mesh_image(image, absent), InputError);
