@@ -187,7 +187,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
   std::optional<ImageTopology> image_topology;
   if (image != nullptr) image_topology = find_topology(*image, threads);
   result.details()["labels"] =
-      labels_table(mesh, places, boundary, topology, image_topology ? &*image_topology : nullptr);
+      labels_table(mesh, label_indices, boundary, topology, image_topology ? &*image_topology : nullptr);
   result.details()["all"] = to_json(boundary.of_label[kAllLabels], topology[kAllLabels]);
   if (image_topology) result.details()["all"]["image"] = to_json(image_topology->all);
   result.details()["connectivity"] =

@@ -53,7 +53,7 @@ std::string description_of(const Declaration& of, const Value& value, bool is_on
   const std::string help = is_on_ranks && of.help_on_ranks ? of.help_on_ranks : of.help;
   if (of.is_required) return help + "\n[required]";
   std::string unset = is_on_ranks && of.unset_on_ranks ? of.unset_on_ranks : of.unset;
-  if (const std::string text = shown(value); unset.empty()) unset = text;
+  if (const std::string text = shown(value); unset.empty()) unset = text.empty() ? "0" : text;
   const std::size_t last_line = help.size() - (help.rfind('\n') + 1);  // of all of it, where there is no \n
   constexpr std::size_t kMostColumns = 82;
   const char* const separator =
