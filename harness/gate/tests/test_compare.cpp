@@ -19,7 +19,7 @@ Row row(double seconds, int threads = 1) {
   made.process.peak_rss_bytes = 5000;
   MeshRecord& mesh = mesh_of(made);
   mesh.options = std::make_shared<const Json>(Json{{"radius_mm", 2.0}});
-  mesh.threads = {threads, threads};
+  mesh.threads = {.asked = threads, .used = threads, .as_written = nullptr};
   mesh.phases_s = {{"refine", seconds}, {"write", 50.0}};
   mesh.cells = 1000;
   mesh.cells_per_second = 1000 / seconds;
