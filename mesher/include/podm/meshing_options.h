@@ -92,6 +92,7 @@ struct SizeOptions {
                 .help = "largest difference of the number of cells from the target, %",
                 .record = "target_tolerance_percent",
                 .uses = kInAll | kInPlan,
+                .not_on_ranks = "the search for the radius needs the whole mesh several times",
                 .most = 100,
                 .quantity = "percentage",
                 .needs = "target-elements"}),
