@@ -162,8 +162,7 @@ class Meshes(OnRanks):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
-        self.assertIn("Not available on ranks", process.stdout)
-        self.assertRegex(process.stdout, r"\n +--target-elements: \w")
+        self.assertIn("Not available on ranks: --target-elements; the search", process.stdout)
 
 
 class InProcess(OnRanks):

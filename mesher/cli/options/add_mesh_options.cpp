@@ -55,7 +55,7 @@ std::string description_of(const Declaration& of, const Value& value, bool is_on
   std::string unset = is_on_ranks && of.unset_on_ranks ? of.unset_on_ranks : of.unset;
   if (const std::string text = shown(value); unset.empty()) unset = text.empty() ? "0" : text;
   const std::size_t last_line = help.size() - (help.rfind('\n') + 1);  // of all of it, where there is no \n
-  constexpr std::size_t kMostColumns = 82;
+  constexpr std::size_t kMostColumns = 80;
   const char* const separator =
       last_line + unset.size() + std::string(" [default: ]").size() > kMostColumns ? "\n" : " ";
   return fmt::format("{}{}[default: {}]", help, separator, unset);
@@ -113,11 +113,11 @@ void add_declared_options(CLI::App& app, Struct& of, OptionUse use, const char* 
 }
 
 std::string refused_on_ranks(MeshCommand& command) {
-  std::string names;
+  std::string text = "Not available on ranks: --algorithm podm-home, --executor virtual.\n";
   for_each_option(command, [&](const Declaration& of, auto&) {
-    if (of.not_on_ranks) names += fmt::format("  --{}: {}\n", of.name, of.not_on_ranks);
+    if (of.not_on_ranks) text += fmt::format("Not available on ranks: --{}; {}.\n", of.name, of.not_on_ranks);
   });
-  return "Not available on ranks: --algorithm podm-home, --executor virtual, and\n" + names;
+  return text;
 }
 
 }  // namespace
