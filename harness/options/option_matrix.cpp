@@ -261,7 +261,8 @@ void refuse_options_excluded_by_ranks(const TomlSection& section, const Json& op
   if (!options.contains(kRanks)) return;
   for (const MesherOption& option : mesher_options())
     if (options.contains(option.key) &&
-        (is_among(kSingleProcessOptions, option.key) || !option.not_on_ranks.empty()))
+        (is_among(kSingleProcessOptions, option.key) || !option.not_on_ranks.empty()) &&
+        option.key != kTargetElements)  // podm finds the radius before the ranks run
       section.fail(option.key, fmt::format("{} and {} exclude each other", kRanks, option.key));
 }
 

@@ -35,8 +35,8 @@ WorkerGroups groups_of(const std::vector<Place>& places) {
 std::optional<MachineModel> read_model(const TeamOptions& options) {
   const bool has_costs = options.topology_path.ends_with(".toml") && options.executor == Executor::kVirtual;
   if (!options.cost_factor.empty() && !has_costs)
-    throw InputError(
-        "--cost-factor requires --executor virtual and a machine in TOML (--topology NAME.toml)");
+    throw InputError(spelled("cost-factor") + " requires executor virtual and a machine in TOML as " +
+                     spelled("topology"));
   if (!options.topology_path.ends_with(".toml")) return std::nullopt;
   MachineModel model = MachineModel::from_file(options.topology_path);
   if (!options.cost_factor.empty()) CostFactor::parse(options.cost_factor).apply_to(model);

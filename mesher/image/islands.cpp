@@ -97,7 +97,7 @@ void remove_empty_labels(LabelImage& image, const std::string& path) {
     if (has_voxels[i]) labels.push_back(image.labels[i]);
   }
   if (labels.size() == image.labels.size()) return;
-  if (labels.size() == 1) refuse(path, "--drop-islands: no label has a component of this volume");
+  if (labels.size() == 1) refuse(path, spelled("drop-islands") + ": no label has a component of this volume");
   for (LabelIndex& voxel : image.voxels) voxel = becomes[voxel];
   image.labels = std::move(labels);
 }
@@ -105,17 +105,16 @@ void remove_empty_labels(LabelImage& image, const std::string& path) {
 std::string warning_of(const DroppedIslands& dropped, double below_mm3) {
   const Label& label = dropped.label;
   return fmt::format(
-      "label {}{} is dropped entirely, {:g} mm^3: none of its {} components has the {:g} mm^3 of "
-      "--drop-islands",
+      "label {}{} is dropped entirely, {:g} mm^3: none of its {} components has the {:g} mm^3 of {}",
       label.value, label.name.empty() ? "" : fmt::format(" ({})", label.name), dropped.volume_mm3,
-      dropped.number, below_mm3);
+      dropped.number, below_mm3, spelled("drop-islands"));
 }
 
 }  // namespace
 
 void drop_islands(LabelImage& image, double below_mm3, const std::string& path) {
   if (!(std::isfinite(below_mm3) && below_mm3 > 0))
-    refuse(path, "--drop-islands: a positive volume in mm^3 is needed");
+    refuse(path, spelled("drop-islands") + ": a positive volume in mm^3 is needed");
   Dropping dropping(image, below_mm3);
   while (dropping.drop_round()) {
   }

@@ -10,6 +10,7 @@
 #include "image/raw_image.h"
 #include "image/stretches.h"
 #include "podm/errors.h"
+#include "podm/option.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -80,14 +81,14 @@ class SelectedLabels {
   SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path,
                  std::size_t threads)
       : path_(path), background_(selection.background), present_(values_with_voxels(image, threads)) {
-    expect_labels(selection.keep, "--labels");
-    expect_labels(selection.drop, "--drop");
+    expect_labels(selection.keep, spelled("labels", "keep"));
+    expect_labels(selection.drop, spelled("drop"));
     std::set<std::uint32_t> merged;
     for (const LabelSelection::Merge& merge : selection.merges)
       for (const std::uint32_t value : merge.values) {
-        expect_label(value, "--merge");
+        expect_label(value, spelled("merge"));
         if (!merged.insert(value).second)
-          refuse(path, "--merge: label " + std::to_string(value) + " is merged twice");
+          refuse(path, spelled("merge") + ": label " + std::to_string(value) + " is merged twice");
       }
     for (const Label& label : image.labels)
       if (present_.contains(label.value) && label.value != background_ &&
@@ -138,11 +139,11 @@ std::vector<Range> parse_label_ranges(const std::string& text, const std::string
 LabelSelection::Merge parse_merge(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
-    throw InputError("--merge: '" + text + "' has no name (write it as 2,3=kidney)");
+    throw InputError(spelled("merge") + ": '" + text + "' has no name (write it as 2,3=kidney)");
   LabelSelection::Merge merge;
   merge.name = text.substr(equals + 1);
   for (const std::string_view part : split_at_commas(std::string_view(text).substr(0, equals)))
-    merge.values.push_back(parse_value(part, "--merge"));
+    merge.values.push_back(parse_value(part, spelled("merge")));
   return merge;
 }
 

@@ -106,7 +106,7 @@ std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, i
   const auto num_processors = static_cast<int>(order.size());
   if (num_workers > num_processors && !oversubscribe)
     throw PlacementError(
-        fmt::format("{} workers, but {} {}; use fewer workers, or --oversubscribe to share processors",
+        fmt::format("{} workers, but {} {}; use fewer workers, or the option oversubscribe to share processors",
                     num_workers, num_processors,
                     plan.kind == PinPlan::Kind::kList ? "processors in the pin plan" : "usable processors"));
   std::vector<Place> places;

@@ -147,7 +147,7 @@ def _options_text(options: Iterable[Mapping[str, Any]]) -> str:
     for option in sorted(options, key=lambda option: _GROUPS.index(option["group"])):
         if option["group"] != group:
             group = option["group"]
-            lines += ["", f"    {group}"]
+            lines += ["", f"    {group.partition(' (')[0]}"]
         default = option["unset"] or option["default"]
         text = f"{_in_keywords(option['help'])}\n[default: {_in_keywords(str(default))}]"
         lines.append(f"      {option['keyword']:<18} " + text.replace("\n", "\n" + " " * 25))

@@ -59,7 +59,7 @@ class DocumentationTest(unittest.TestCase):
     def test_help_lists_every_option_with_its_default(self):
         text = podm.mesh.__doc__
         for keyword in option_keywords():
-            self.assertRegex(text, rf"(?m)^ +{keyword} ")
+            self.assertRegex(text, rf"(?m)^ +{keyword}( |$)")
         self.assertIn("[default: podm]", text)
         self.assertNotRegex(text, r"--[a-z]")
 
