@@ -105,10 +105,10 @@ std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, i
   const std::vector<Processor> order = processors_in_order(machine, plan);
   const auto num_processors = static_cast<int>(order.size());
   if (num_workers > num_processors && !oversubscribe)
-    throw PlacementError(
-        fmt::format("{} workers, but {} {}; use fewer workers, or the option oversubscribe to share processors",
-                    num_workers, num_processors,
-                    plan.kind == PinPlan::Kind::kList ? "processors in the pin plan" : "usable processors"));
+    throw PlacementError(fmt::format(
+        "{} workers, but {} {}; use fewer workers, or the option oversubscribe to share processors",
+        num_workers, num_processors,
+        plan.kind == PinPlan::Kind::kList ? "processors in the pin plan" : "usable processors"));
   std::vector<Place> places;
   for (int worker = 0; worker < num_workers; ++worker) {
     const Processor& processor = order[worker % num_processors];
