@@ -162,7 +162,7 @@ class Meshes(OnRanks):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
-        self.assertIn("Not available on ranks: --target-elements; the search", process.stdout)
+        self.assertIn("Not on ranks: --target-elements; the search", process.stdout)
 
 
 class InProcess(OnRanks):

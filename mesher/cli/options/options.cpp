@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "cli/build_info.h"
 #include "cli/options/add_options.h"
 #include "cli/options/nearest_name.h"
 #include "cli/options/options_json.h"
-#include "cli/build_info.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
