@@ -55,7 +55,7 @@ InterfaceDistances distances_to(const LabelImage& image, const InterfaceSize& ne
     for (unsigned char side = 0; side < 2; ++side)
       if (std::count(near.labels[side].begin(), near.labels[side].end(), image.labels[label].value) > 0) {
         if (side_of_label[label] != 0)
-          throw InputError(fmt::format("sizes at the interface of {} and {}: label {} is on both sides",
+          throw InputError(fmt::format("sizes at the interface of labels {} and {}: label {} is on both sides",
                                        text_of(near.labels[0]), text_of(near.labels[1]),
                                        image.labels[label].value));
         side_of_label[label] = static_cast<unsigned char>(side + 1);
@@ -65,7 +65,7 @@ InterfaceDistances distances_to(const LabelImage& image, const InterfaceSize& ne
   const double reach_mm = near.width_mm + 2 * diagonal_mm(image);
   auto distances = interface_distances(image, side_of_label, reach_mm, threads);
   if (!distances)
-    throw InputError(fmt::format("sizes at the interface of {} and {}: they have no voxels that touch",
+    throw InputError(fmt::format("sizes at the interface of labels {} and {}: they have no voxels that touch",
                                  text_of(near.labels[0]), text_of(near.labels[1])));
   return std::move(*distances);
 }

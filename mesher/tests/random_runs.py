@@ -125,7 +125,7 @@ def worker_options(rng, algorithm, most):
         nodes = divisor(rng, threads)
         options = pick(rng, [[*options, "--nodes", nodes], [*options, "--cores-per-node", nodes], options,
                              ["--nodes", nodes, "--cores-per-node", threads // nodes]])
-    if algorithm == "auto" or algorithm == "pdr-podm" and chance(rng, 0.2):
+    if algorithm == "auto":
         options += ["--crossover", rng.integers(1, 2 * threads, endpoint=True)]
     if algorithm != "podm" and chance(rng, 0.5):
         options += ["--initial-threads", rng.integers(1, threads, endpoint=True)]
