@@ -55,9 +55,9 @@ InterfaceDistances distances_to(const LabelImage& image, const InterfaceSize& ne
     for (unsigned char side = 0; side < 2; ++side)
       if (std::count(near.labels[side].begin(), near.labels[side].end(), image.labels[label].value) > 0) {
         if (side_of_label[label] != 0)
-          throw InputError(fmt::format("sizes at the interface of labels {} and {}: label {} is on both sides",
-                                       text_of(near.labels[0]), text_of(near.labels[1]),
-                                       image.labels[label].value));
+          throw InputError(
+              fmt::format("sizes at the interface of labels {} and {}: label {} is on both sides",
+                          text_of(near.labels[0]), text_of(near.labels[1]), image.labels[label].value));
         side_of_label[label] = static_cast<unsigned char>(side + 1);
       }
   // With this reach every point around the outermost voxels of the part is beyond the width, except at the
