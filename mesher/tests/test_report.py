@@ -44,7 +44,7 @@ class Report(PodmTestCase):
             self.assertIn(f'"value": {label["value"]}, ', self.page())
         (self.folder / "a.jsonl").unlink()
         self.assert_exit(self.mesh(), 0)
-        self.assertIn("Nobody else has checked it", self.page())
+        self.assertIn("It is not verified independently", self.page())
 
     def test_a_missed_limit_is_the_first_thing_said(self):
         self.assert_exit(self.mesh("--max-elements", "200"), 1)

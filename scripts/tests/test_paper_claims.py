@@ -209,7 +209,7 @@ class Table(unittest.TestCase):
             text = paper_claims.markdown_lines(paper_claims.rows(found, load([folder]).frame))
         self.assertEqual([one.count(" | ") for one in text[: 2 + len(LINES)]], [4] * (2 + len(LINES)))
         self.assertTrue(any("64 (40 k), 128 (160 k) on 256 cores; not fitted" in one for one in text))
-        self.assertIn("Not judged: below a threshold", text[3 + len(LINES)])
+        self.assertIn("Not judged: threads of a computing node", text[3 + len(LINES)])
         self.assertLessEqual(max(map(len, text[3 + len(LINES):])), 120)
         self.assertFalse(any("\N{NO-BREAK SPACE}" in one for one in text))
 
