@@ -115,7 +115,7 @@ class Packed(unittest.TestCase):
     def test_too_many_cells_are_refused(self):
         count = viewer.MAX_CELLS + 1
         mesh = Mesh(numpy.zeros((4, 3)), numpy.broadcast_to(numpy.arange(4), (count, 4)), numpy.zeros(count, int))
-        with self.assertRaisesRegex(viewer.TooManyCells, "too many for a page"):
+        with self.assertRaisesRegex(viewer.TooManyCells, "more than a page can show"):
             viewer.pack(mesh)
 
 

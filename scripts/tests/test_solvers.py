@@ -53,9 +53,9 @@ class Solvers(unittest.TestCase):
     def test_bars_are_iterations_by_image_and_preconditioner(self):
         figure = solvers.figure(frame_of(ROWS))
         titles = [axes.get_title() for axes in figure.axes]
-        self.assertEqual(titles, ["synthetic: Jacobi", "other: Jacobi", "synthetic: algebraic multigrid",
-                                  "other: algebraic multigrid"])
-        heights = {bar.get_height() for bar in figure.axes[0].patches}
+        self.assertEqual(titles, ["other: Jacobi", "synthetic: Jacobi", "other: algebraic multigrid",
+                                  "synthetic: algebraic multigrid"])
+        heights = {bar.get_height() for bar in figure.axes[1].patches}
         self.assertEqual(heights, {200, 180, 140, 160})
 
 

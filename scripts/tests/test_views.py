@@ -47,8 +47,8 @@ class Files(InFolder):
 
     def test_what_cannot_be_shown_is_named(self):
         for path, words in ((self.folder / "none.vtu", "none.vtu: No such file"),
-                            (self.folder / "mesh.inp", "mesh.inp: no mesh file that can be shown; convert it"),
-                            (self.folder, "no mesh file")):
+                            (self.folder / "mesh.inp", "mesh.inp: not a mesh file that can be shown; convert it"),
+                            (self.folder, "not a mesh file")):
             with self.assertRaisesRegex(MeshError, words):
                 read_mesh(path)
 
