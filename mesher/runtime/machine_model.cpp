@@ -106,7 +106,7 @@ void refuse_unconnected(const TomlSection& section, const Network& network) {
   const std::vector<int> links = links_from(network.neighbours, 0);
   const auto apart = std::find(links.begin(), links.end(), -1);
   if (apart != links.end())
-    section.fail(fmt::format("no links lead from node 0 to {}",
+    section.fail(fmt::format("{} is not connected to node 0",
                              name_of(network, static_cast<int>(apart - links.begin()))));
 }
 
