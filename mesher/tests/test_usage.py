@@ -1,5 +1,6 @@
 """The command line itself: help, version, and refusals before any file is read."""
 
+import json
 import re
 import subprocess
 import unittest
@@ -77,6 +78,24 @@ class Help(PodmTestCase):
             process = subprocess.run([PROGRAM, "--help"], stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual(process.returncode, 2)
         self.assertIn("standard output", process.stderr)
+
+
+class Judging(PodmTestCase):
+    def judging(self, *options):
+        """Returns the claims and the options with which the record of a run has its mesh judged."""
+        records = self.folder / "runs.jsonl"
+        self.assert_exit(run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "m.vtu", "--radius", 6, "--record",
+                                  records, *options), 0)
+        verify = json.loads(records.read_text().splitlines()[-1])["verify"]
+        return verify["claims"], " ".join(verify["options"])
+
+    def test_records_have_the_claims_that_a_mesh_promises(self):
+        claims, options = self.judging()
+        self.assertLessEqual({"delaunay", "size", "surface_vertices"}, set(claims))
+        self.assertIn("--radius 6", options)
+        self.assertNotIn("delaunay", self.judging("--optimize")[0])
+        self.assertIn("fidelity", self.judging("--verify-fidelity")[0])
+        self.assertIn("--size-near 1,0=2:3 --grade 0.5", self.judging("--size-near", "1,0=2:3", "--grade", "0.5")[1])
 
 
 class Usage(PodmTestCase):

@@ -51,7 +51,7 @@ TEST(CpuInfo, SaysWhatItLacks) {
   EXPECT_TRUE(cpu_model_in(nothing).vendor.starts_with(Unavailable::kPrefix));
   const CpuModel cpu = cpu_model_in(broken);
   EXPECT_EQ(cpu.vendor, "Some");
-  EXPECT_EQ(std::get<Unavailable>(cpu.family).why, "/proc/cpuinfo: 'cpu family' is 'many', no number");
+  EXPECT_EQ(std::get<Unavailable>(cpu.family).why, "/proc/cpuinfo: 'cpu family' is 'many', not a number");
   EXPECT_EQ(cpu.model, Count(3UL));
   EXPECT_EQ(std::get<Unavailable>(cpu.stepping).why, "/proc/cpuinfo has no 'stepping'");
 }

@@ -126,7 +126,7 @@ TEST(PinPlan, NamesTheBadPieceAndWhatIsAllowed) {
 TEST(Placement, RefusesMoreWorkersThanProcessors) {
   for (const char* plan : {"compact", "scatter", "none"})
     EXPECT_THAT(fault_of<PlacementError>([&] { place_workers(one_node(), PinPlan::parse(plan), 9, false); }),
-                AllOf(HasSubstr("9 workers"), HasSubstr("8 processors"), HasSubstr("oversubscribe")));
+                AllOf(HasSubstr("9 workers"), HasSubstr("8 usable processors"), HasSubstr("oversubscribe")));
   EXPECT_THAT(fault_of<PlacementError>([] { place_workers(one_node(), PinPlan::parse("1,2"), 3, false); }),
               AllOf(HasSubstr("3 workers"), HasSubstr("2 processors"), HasSubstr("oversubscribe")));
 }
