@@ -129,10 +129,10 @@ class Figures(Tree):
         self.assertEqual(self.faults(f"3.00{QUERY} M cells\n"), [])
 
     def test_queries_that_cannot_be_read_say_why(self):
-        for query, word in (("x; y", "no query"), ("0.1.0/gone.jsonl;; cells; median; d", "no such file"),
-                            ("0.1.0/sizes/rows.jsonl;; cells; mode; d", "no statistic"),
-                            ("0.1.0/sizes/rows.jsonl;; __import__('os'); median; d", "no path"),
-                            ("0.1.0/sizes/rows.jsonl;; cells; median; /1e6", "no format"),
+        for query, word in (("x; y", "not a query"), ("0.1.0/gone.jsonl;; cells; median; d", "no such file"),
+                            ("0.1.0/sizes/rows.jsonl;; cells; mode; d", "not a statistic"),
+                            ("0.1.0/sizes/rows.jsonl;; __import__('os'); median; d", "not a path"),
+                            ("0.1.0/sizes/rows.jsonl;; cells; median; /1e6", "not a format"),
                             ("0.1.0/sizes/rows.jsonl;; cells / (repeat - repeat); max; d", "division by zero"),
                             ("0.1.0/sizes/rows.jsonl;; status; median; d", "median of 'status'"),
                             ("somewhere;; cells; median; d", "neither files")):

@@ -82,7 +82,7 @@ class Programs(unittest.TestCase):
         for program, arguments, words in (
             ("make_figures", ["--records", self.folder / "none"], "none: no such file or folder"),
             ("make_figures", ["--records", newer], "newer.jsonl:1: schema 9"),
-            ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: no mesh file that can be shown"),
+            ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: not a mesh file that can be shown"),
             ("report", ["--records", fine, "--verified", fine], "fine.jsonl: not a report of schema podm-verify/1"),
             ("report", ["--records", fine, "--schedule", fine],
              "fine.jsonl: schema 4; this program reads podm-schedule/1"),
@@ -205,7 +205,7 @@ class Page(unittest.TestCase):
         self.assertEqual(len(re.findall(r'<th scope="row">', shown)), len(paper_claims.read_lines()[0]))
         line = re.search(r"<tr>(?:(?!</tr>).)*PODM falls behind.*?</tr>", shown).group()
         self.assertIn('simulated <span class="verdict contradicted">', line)
-        self.assertIn("simulated: 11 agrees, 1 contradicted, 2 not judged", shown)
+        self.assertIn("simulated: 12 agrees, 1 contradicted, 2 not judged", shown)
 
     def test_verdicts_without_a_claim_that_the_paper_needs_name_it(self):
         rows = write_rows(self.path.parent / "few.jsonl", [synthetic.row()])
