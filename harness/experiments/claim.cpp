@@ -129,6 +129,11 @@ void read_series(TomlSection& section, const Trials& trials, const char* of, con
 
 void read_across(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.across = read_texts(section, "across");
+  if (claim.over_best && !claim.across.empty())
+    section.fail("across",
+                 fmt::format("across would merge the series among which \"{}\" chooses; name the options "
+                             "that differ in the first series",
+                             kBestOfOthers));
   for (const std::string& key : claim.across)
     if (key != kInput) refuse_unknown_key(section, "across", key, trials);
 }

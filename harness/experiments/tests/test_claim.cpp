@@ -89,6 +89,8 @@ TEST(Claim, FaultsNameThePlace) {
       {bound + "at_most = 1\nextent = 'some'\n", "claim.toml:7:10:", "one socket"},
       {trend + "along = 'threads'\ndirection = 'wanders'\n", "claim.toml:7:13:", "grows"},
       {ratio + "of = {algorithm = 'podm'}\nover = 'the best'\n", "claim.toml:8:8:", "best of the others"},
+      {ratio + "of = {threads = 2}\nover = 'best of the others'\nat_least = 1\nacross = ['algorithm']\n",
+       "claim.toml:10:10:", "merge"},
       {bound + "at_most = 'x'\n", "claim.toml:6:11:", "number"},  // wrong types
       {bound + "at_most = nan\n", "claim.toml:6:11:", "number"},
       {bound + "at_most = 1\nwhere = 'podm'\n", "claim.toml:7:9:", "table"},

@@ -157,6 +157,26 @@ TEST(JudgeRatio, OverTheBestOfTheOthers) {
   EXPECT_EQ(verdict_of(claim_of("refining_seconds"), {rows[0]}), kOpen) << "nobody to compare with";
 }
 
+TEST(JudgeRatio, ChoosesAmongSeriesThatDifferInAnOptionOfBoth) {
+  const Claim claim = read_claim_of(R"(
+basis = "measured"
+kind = "ratio"
+value = "refining_cells_per_second"
+of = {algorithm = "pdr-podm", contention = "local"}
+over = "best of the others"
+at_least = 0.95
+)");
+  const auto row = [](const char* algorithm, double rate) {
+    return refined_in(1 / rate, {{"algorithm", algorithm}});
+  };
+  const auto with_option = [](double rate) {
+    return refined_in(1 / rate, {{"algorithm", "pdr-podm"}, {"contention", "local"}});
+  };
+  const Rows others{row("podm", 2), row("pdr-podm", 1)};
+  EXPECT_DOUBLE_EQ(*judged(claim, {with_option(2), others[0], others[1]}).value, 1);
+  EXPECT_DOUBLE_EQ(*judged(claim, {with_option(1), others[0], others[1]}).value, 0.5);
+}
+
 TEST(JudgeRatio, OverOneThreadIsTheBaseOfAllNumbersOfThreads) {
   const Claim claim = read_claim_of(R"(
 basis = "measured"
