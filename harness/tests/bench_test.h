@@ -39,11 +39,12 @@ class BenchTest : public testing::Test {
   // Returns the exit code of podm-bench. Its output is in the files "out" and "err".
   int bench(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), PODM_BENCH);
-    return run_process({.arguments = arguments,
-                        .stdout_path = folder_ / "out",
-                        .stderr_path = folder_ / "err",
-                        .timeout_s = 60})
-        .exit_code;
+    const ProcessOutcome outcome = run_process({.arguments = arguments,
+                                                .stdout_path = folder_ / "out",
+                                                .stderr_path = folder_ / "err",
+                                                .timeout_s = 240});
+    EXPECT_EQ(outcome.end, ProcessOutcome::End::kExited) << outcome.describe() << "\n" << printed("err");
+    return outcome.exit_code;
   }
   int run_with(const std::string& mesh_body, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{
