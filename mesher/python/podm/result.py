@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _podm, verification
+from . import _podm, conversion, verification
 from .checks import path_bytes
 from .verification import Verification
 
@@ -128,32 +128,25 @@ class Mesh:
         self._made.save_surfaces(path_bytes("path", path))
 
     def to_meshio(self) -> meshio.Mesh:
-        """Returns a meshio.Mesh with blocks of cells and of facets. Needs the package meshio.
+        """Returns a meshio.Mesh with a block of cells and a block of facets. Needs the package meshio.
 
         Cell data: "label" of cells (the second label of facets), "label_a" and "label_b" of facets (a cell has its own
-        label on both sides)."""
-        import meshio
-        first, second = self.facet_labels.T
-        return meshio.Mesh(self.points, [("tetra", self.cells), ("triangle", self.facets)], cell_data={
-            "label": [self.labels, second], "label_a": [self.labels, first], "label_b": [self.labels, second]})
+        label on both sides). Field data: for each name of a label [value, 3], as meshio has it for Gmsh's groups."""
+        return conversion.to_meshio(self)
 
     def to_vtk(self) -> vtk.vtkUnstructuredGrid:
         """Returns a vtkUnstructuredGrid of the cells, with the cell array `label`. Needs the package vtk.
 
-        Points and labels share the memory of this mesh. Cells are a copy: VTK 9.1 keeps no other cells alive."""
-        import vtk
-        from vtk.util.numpy_support import numpy_to_vtk
-        points, labels = numpy_to_vtk(self.points), numpy_to_vtk(self.labels)
-        grid = vtk.vtkUnstructuredGrid()
-        grid.SetPoints(vtk.vtkPoints())
-        grid.GetPoints().SetData(points)
-        offsets = np.arange(0, self.cells.size + 1, 4, dtype=np.int32)
-        cells = vtk.vtkCellArray()
-        cells.SetData(*(numpy_to_vtk(array, deep=True) for array in (offsets, self.cells.view(np.int32).ravel())))
-        grid.SetCells(vtk.VTK_TETRA, cells)
-        labels.SetName("label")
-        grid.GetCellData().SetScalars(labels)
-        return grid
+        For PyVista: pyvista.wrap(mesh.to_vtk()). Field data has the names of labels, as in the .vtu files of podm: an
+        array "label:liver" holds the value of the liver. Points and labels share the memory of this mesh; cells are a
+        copy."""
+        return conversion.to_vtk(self)
+
+    def facets_to_vtk(self) -> vtk.vtkPolyData:
+        """Returns a vtkPolyData of the facets, with the cell arrays `label_a` and `label_b`. Needs the package vtk.
+
+        It has all points of the mesh, and the field data of to_vtk()."""
+        return conversion.facets_to_vtk(self)
 
     def _values_of(self, labels: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint32]:
         """Returns the image's values of labels that the mesher has numbered, read-only."""

@@ -4,7 +4,9 @@ import gc
 import json
 import re
 import subprocess
+import sys
 import unittest
+import unittest.mock
 import warnings
 import weakref
 
@@ -220,7 +222,7 @@ class ResultTest(TestCase):
 class OtherPackagesTest(TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.mesh = podm.mesh(balls(), affine=AFFINE, radius=1.5)
+        cls.mesh = podm.mesh(balls(), affine=AFFINE, radius=1.5, names={3: "liver"})
 
     def test_vtk_looks_at_the_memory_of_the_mesh(self):
         import vtk
@@ -235,6 +237,36 @@ class OtherPackagesTest(TestCase):
         sizes.Update()
         volumes = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume"))
         np.testing.assert_allclose(volumes, self.mesh.quality()["volume"], rtol=1e-6)
+
+    def test_vtk_has_the_facets_and_their_pairs_of_labels(self):
+        from vtk.util.numpy_support import vtk_to_numpy
+        surface = self.mesh.facets_to_vtk()
+        corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        np.testing.assert_array_equal(corners, self.mesh.facets)
+        self.assertTrue(np.shares_memory(vtk_to_numpy(surface.GetPoints().GetData()), self.mesh.points))
+        pairs = [vtk_to_numpy(surface.GetCellData().GetArray(name)) for name in ("label_a", "label_b")]
+        np.testing.assert_array_equal(np.column_stack(pairs), self.mesh.facet_labels)
+
+    def test_vtk_has_the_fields_of_the_file(self):
+        import vtk
+        self.mesh.save(self.folder / "mesh.vtu")
+        for made, name in ((self.mesh.to_vtk(), "mesh.vtu"), (self.mesh.facets_to_vtk(), "mesh_facets.vtu")):
+            reader = vtk.vtkXMLUnstructuredGridReader()
+            reader.SetFileName(str(self.folder / name))
+            reader.Update()
+            self.assertEqual(self.fields_of(made), self.fields_of(reader.GetOutput()))
+            self.assertIn(("label:liver", 3), self.fields_of(made))
+
+    def fields_of(self, grid):
+        arrays = [grid.GetFieldData().GetArray(index) for index in range(grid.GetFieldData().GetNumberOfArrays())]
+        return [(array.GetName(), array.GetTuple1(0)) for array in arrays]
+
+    def test_a_missing_package_is_named(self):
+        for convert, package in ((self.mesh.to_meshio, "meshio"), (self.mesh.to_vtk, "vtk"),
+                                 (self.mesh.facets_to_vtk, "vtk")):
+            with unittest.mock.patch.dict(sys.modules, {package: None}):
+                with self.assertRaisesRegex(ModuleNotFoundError, f"needs the Python package {package}.*python3-"):
+                    convert()
 
     def test_vtk_keeps_the_memory_alive(self):
         from vtk.util.numpy_support import vtk_to_numpy
@@ -264,6 +296,8 @@ class OtherPackagesTest(TestCase):
         np.testing.assert_array_equal(read.cell_data_dict["label"]["tetra"], self.mesh.labels)
         pairs = [read.cell_data_dict[name]["triangle"] for name in ("label_a", "label_b")]
         np.testing.assert_array_equal(np.column_stack(pairs), self.mesh.facet_labels)
+        fields = {name: list(value) for name, value in self.mesh.to_meshio().field_data.items()}
+        self.assertEqual(fields, {"liver": [3, 3], "label 7": [7, 3]})
 
 
 if __name__ == "__main__":
