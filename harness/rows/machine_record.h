@@ -12,8 +12,8 @@ namespace podm::bench {
 /// Identifies a kind of machine beyond the processor's name, which virtual machines shorten to that of a
 /// family. A field that the system does not report reads "unavailable: why".
 struct IdentityRecord {
-  std::string vendor;                               ///< CPUID's, "GenuineIntel"
-  Count family = 0UL, model = 0UL, stepping = 0UL;  ///< from CPUID, with the extended parts added
+  std::string vendor;                                                 ///< "GenuineIntel"
+  Count family = 0UL, model = 0UL, stepping = 0UL;                    ///< with the extended parts added
   std::variant<ByName<std::uint64_t>, Unavailable> cache_bytes = {};  ///< data caches: "L1", "L2", ...
   Count memory_gib = 0UL;  ///< rounded up; the kernel reserves a varying part of the last one
   std::string kernel;      ///< "Linux 6.1.0 x86_64"
