@@ -31,7 +31,7 @@ enum OptionUse : unsigned {
   kOfFiles = kInPodm | kOnRanks,  ///< the program alone writes files
 };
 
-/// What few options need.
+/// Details that few options need.
 struct OptionDetails {
   const char* unset = "";        ///< what the default 0, false or no text means
   const char* record = nullptr;  ///< its key in the record's `options`; null: the name, with _ for -
