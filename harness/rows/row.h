@@ -204,34 +204,36 @@ struct EnvironmentRecord : MachineRecord {
   }
 };
 
+/// What is known of a trial when it has ended.
+struct TrialOutcome {
+  Status status = Status::kFailed;
+  std::string reason;                                   ///< the reason of a status that is not kOk
+  std::vector<std::string> command;                     ///< the arguments of the process
+  std::optional<MeshRecord> mesh;                       ///< the mesher's record; unset without a mesh
+  std::optional<MemoryLevelsRecord> measured;           ///< measurement of a trial that makes no mesh
+  std::optional<Replay> replay;                         ///< unset if it was not requested
+  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if a single process ran
+  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
+  double preparation_s = 0, verification_s = 0;         ///< before the mesher starts and after it has ended
+  std::string stderr_tail;                              ///< end of stderr of a trial that is not kOk
+};
+
 /// One line of a file of results.
-struct Row {
+struct Row : TrialOutcome {
   int schema = kRowSchema;
   std::string key;  ///< identifies the turn: TrialKeys
   std::string experiment, trial;
   int repeat = 1;  ///< number of the round, from 1; warm-ups and measured repeats are counted apart
   bool warmup = false;
   std::uint64_t order_seed = 0;  ///< seed of the schedule
-  Status status = Status::kFailed;
-  std::string reason;  ///< the reason of a status that is not kOk
-  JsonPointer asked;   ///< the trial's options by the keys of experiments/*.toml
+  JsonPointer asked;             ///< the trial's options by the keys of experiments/*.toml
   Basis basis = Basis::kMeasured;
-  std::vector<std::string> command;  ///< the arguments of the process
   std::optional<ResolvedRadius> resolved;
   InputRecord input;
-
-  std::optional<MeshRecord> mesh;              ///< the mesher's record; unset without a mesh
-  std::optional<MemoryLevelsRecord> measured;  ///< measurement of a trial that makes no mesh
-
-  std::optional<Replay> replay;                         ///< unset if it was not requested
-  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if a single process ran
-  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
-  std::optional<std::uint64_t> mesh_bytes;              ///< size of the mesh file
+  std::optional<std::uint64_t> mesh_bytes;  ///< size of the mesh file
   ProcessRecord process;
-  double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
-  double harness_s = 0;                          ///< time that this program spent since the row before
-  std::string stderr_tail;                       ///< end of stderr of a trial that is not kOk
-  std::optional<bool> probe_moved;               ///< true if the machine's speed moved during the row's round
+  double harness_s = 0;             ///< time that this program spent since the row before
+  std::optional<bool> probe_moved;  ///< true if the machine's speed moved during the row's round
   ProgramRecords programs;
   EnvironmentRecord environment;
 
