@@ -41,7 +41,7 @@ may_include() {
   esac
 }
 
-# Sets `part` to the room of a file. Tests and benchmarks may include all of their program.
+# Sets `part` to the room of a file. Tests may include all of their program.
 set_part_of() {
   part=${1#*/}
   part=${1%%/*}/${part%%/*}  # the first two folders

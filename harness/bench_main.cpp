@@ -20,6 +20,13 @@ std::string beside_this_program(const char* name) {
 }
 
 // Adds the command. Sets `exit_code` when the command was chosen and has ended.
+// Adds an option whose value help shows as `type`.
+template <class Value>
+CLI::Option* add_option(CLI::App& app, const char* name, const char* type, Value& value,
+                        const std::string& description) {
+  return app.add_option(name, value, description)->option_text(type);
+}
+
 void add_run(CLI::App& program, int& exit_code) {
   struct State {
     RunCommand command;
@@ -35,34 +42,27 @@ void add_run(CLI::App& program, int& exit_code) {
                       PODM_LIKWID_GROUPS,
                       PODM_SOLVER};
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
-  app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")
-      ->option_text(" ")
-      ->required();
-  app.add_option("--only", command.only, "run only trials of this name; * and ? match any [default: all]")
-      ->option_text("PATTERN");
-  app.add_option("--tier", state->tier, "run this tier: kick-tires, default or full [default: all]")
-      ->option_text("kick-tires|default|full");
-  app.add_option("--image", command.images,
-                 "a label image in place of all inputs; repeatable [default: the inputs]")
-      ->option_text("FILE")
+  add_option(app, "EXPERIMENT", " ", command.experiment_paths, "files of experiments/")->required();
+  add_option(app, "--only", "PATTERN", command.only,
+             "run only trials of this name; * and ? match any [default: all]");
+  add_option(app, "--tier", "kick-tires|default|full", state->tier,
+             "run this tier: kick-tires, default or full [default: all]");
+  add_option(app, "--image", "FILE", command.images,
+             "a label image in place of all inputs; repeatable [default: the inputs]")
       ->allow_extra_args(false);
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
   app.add_flag("--keep", command.keep, "keep each trial's mesh and messages [default: delete them]");
-  app.add_option("--order-seed", command.order_seed,
-                 fmt::format("draws the order within each round [default: {}]", command.order_seed))
-      ->option_text("N");
-  app.add_option("--results", command.results_folder,
-                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
-      ->option_text("FOLDER");
-  app.add_option("--podm", command.programs.podm, "file of the mesher [default: podm beside this program]")
-      ->option_text("FILE");
-  app.add_option("--verifier", command.programs.verifier,
-                 "file of the verifier, or none [default: podm-verify beside this program]")
-      ->option_text("FILE");
-  app.add_option("--peers", command.programs.peers,
-                 "folder of other meshers [default: harness/peers of the sources]")
-      ->option_text("FOLDER");
+  add_option(app, "--order-seed", "N", command.order_seed,
+             fmt::format("draws the order within each round [default: {}]", command.order_seed));
+  add_option(app, "--results", "FOLDER", command.results_folder,
+             fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
+  add_option(app, "--podm", "FILE", command.programs.podm,
+             "file of the mesher [default: podm beside this program]");
+  add_option(app, "--verifier", "FILE", command.programs.verifier,
+             "file of the verifier, or none [default: podm-verify beside this program]");
+  add_option(app, "--peers", "FOLDER", command.programs.peers,
+             "folder of other meshers [default: harness/peers of the sources]");
   app.callback([state, &exit_code] {
     if (state->command.programs.verifier == "none") state->command.programs.verifier.clear();
     if (!state->tier.empty()) state->command.tier = parse_tier(state->tier);
@@ -73,7 +73,7 @@ void add_run(CLI::App& program, int& exit_code) {
 void add_list(CLI::App& program, int& exit_code) {
   const auto folder = std::make_shared<std::string>("experiments");
   CLI::App& app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
-  app.add_option("FOLDER", *folder, fmt::format("where they are [default: {}]", *folder))->option_text(" ");
+  add_option(app, "FOLDER", " ", *folder, fmt::format("where they are [default: {}]", *folder));
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
 }
 
@@ -84,14 +84,10 @@ void add_verdicts(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   CLI::App& app = *program.add_subcommand("verdicts", "judge the claims of experiments by their rows");
-  app.add_option("EXPERIMENT", state->experiment_paths, "files of experiments/")
-      ->option_text(" ")
-      ->required();
-  app.add_option("--results", state->results_folder,
-                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
-      ->option_text("FOLDER");
-  app.add_option("--json", state->json_path, "also write them as JSON to this file [default: none]")
-      ->option_text("FILE");
+  add_option(app, "EXPERIMENT", " ", state->experiment_paths, "files of experiments/")->required();
+  add_option(app, "--results", "FOLDER", state->results_folder,
+             fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
+  add_option(app, "--json", "FILE", state->json_path, "also write them as JSON to this file [default: none]");
   app.callback([state, &exit_code] {
     exit_code = verdicts(state->experiment_paths, state->results_folder, state->json_path);
   });
@@ -100,8 +96,7 @@ void add_verdicts(CLI::App& program, int& exit_code) {
 void add_latency(CLI::App& program, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   CLI::App& app = *program.add_subcommand("latency", "measure the latency of each memory level, Table 3");
-  app.add_option("--record", *path, "write it as JSON to this file [default: standard output]")
-      ->option_text("FILE");
+  add_option(app, "--record", "FILE", *path, "write it as JSON to this file [default: standard output]");
   app.callback([path, &exit_code] { exit_code = latency(*path); });
 }
 
@@ -117,8 +112,8 @@ void add_compare(CLI::App& program, int& exit_code) {
   const auto paths = std::make_shared<std::pair<std::string, std::string>>();
   CLI::App& app =
       *program.add_subcommand("compare", "compare two files of records; exits with 1 when B is worse");
-  app.add_option("A", paths->first, "JSON lines of the program before")->option_text(" ")->required();
-  app.add_option("B", paths->second, "JSON lines of the program after")->option_text(" ")->required();
+  add_option(app, "A", " ", paths->first, "JSON lines of the program before")->required();
+  add_option(app, "B", " ", paths->second, "JSON lines of the program after")->required();
   app.callback([paths, &exit_code] { exit_code = compare_files(paths->first, paths->second); });
 }
 
@@ -132,19 +127,16 @@ void add_gate(CLI::App& program, int& exit_code) {
   options.head = beside_this_program("podm");
   CLI::App& app = *program.add_subcommand(
       "gate", "judge a change of the mesher; exits with 1 when it must not be merged");
-  app.add_option("--head", options.head, "file of the mesher to judge [default: podm beside this program]")
-      ->option_text("FILE");
-  app.add_option("--base", options.base, "file of the mesher before the change [default: compare no seconds]")
-      ->option_text("FILE");
-  app.add_option("--tier", options.tiers, "1 work, 2 seconds, 3 scaling; repeatable [default: all]")
-      ->option_text("1|2|3")
+  add_option(app, "--head", "FILE", options.head,
+             "file of the mesher to judge [default: podm beside this program]");
+  add_option(app, "--base", "FILE", options.base,
+             "file of the mesher before the change [default: compare no seconds]");
+  add_option(app, "--tier", "1|2|3", options.tiers, "1 work, 2 seconds, 3 scaling; repeatable [default: all]")
       ->check(CLI::Range(1, 3));
-  app.add_option("--budgets", options.budgets_path,
-                 fmt::format("committed work [default: {}]", options.budgets_path))
-      ->option_text("FILE");
-  app.add_option("--order-seed", options.order_seed,
-                 fmt::format("draws the order within each round [default: {}]", options.order_seed))
-      ->option_text("N");
+  add_option(app, "--budgets", "FILE", options.budgets_path,
+             fmt::format("committed work [default: {}]", options.budgets_path));
+  add_option(app, "--order-seed", "N", options.order_seed,
+             fmt::format("draws the order within each round [default: {}]", options.order_seed));
   app.add_flag("--renew", state->renews,
                "write the work of the head into the file of budgets [default: judge]");
   app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
@@ -155,22 +147,18 @@ void add_gate_evidence(CLI::App& program, int& exit_code) {
   command->podm = beside_this_program("podm");
   CLI::App& app = *program.add_subcommand(
       "gate-evidence", "count how often the gate's answer about seconds errs on recorded rounds");
-  app.add_option("FILE", command->rounds_path, "JSON lines of the rounds")->option_text(" ")->required();
-  app.add_option("--rounds", command->num_rounds,
-                 "first record this number of further rounds, with planted slowdowns [default: 0]")
-      ->option_text("N")
+  add_option(app, "FILE", " ", command->rounds_path, "JSON lines of the rounds")->required();
+  add_option(app, "--rounds", "N", command->num_rounds,
+             "first record this number of further rounds, with planted slowdowns [default: 0]")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--podm", command->podm, "file of the mesher to record [default: podm beside this program]")
-      ->option_text("FILE");
-  app.add_option("--budgets", command->budgets_path,
-                 fmt::format("names the trial to record [default: {}]", command->budgets_path))
-      ->option_text("FILE");
-  app.add_option("--order-seed", command->order_seed,
-                 fmt::format("draws the order within rounds [default: {}]", command->order_seed))
-      ->option_text("N");
-  app.add_option("--json", command->json_path,
-                 "also write the counts as JSON lines to this file [default: none]")
-      ->option_text("FILE");
+  add_option(app, "--podm", "FILE", command->podm,
+             "file of the mesher to record [default: podm beside this program]");
+  add_option(app, "--budgets", "FILE", command->budgets_path,
+             fmt::format("names the trial to record [default: {}]", command->budgets_path));
+  add_option(app, "--order-seed", "N", command->order_seed,
+             fmt::format("draws the order within rounds [default: {}]", command->order_seed));
+  add_option(app, "--json", "FILE", command->json_path,
+             "also write the counts as JSON lines to this file [default: none]");
   app.callback([command, &exit_code] { exit_code = gate_evidence(*command); });
 }
 
@@ -182,13 +170,11 @@ void add_gate_simulation(CLI::App& program, int& exit_code) {
   const auto state = std::make_shared<State>();
   CLI::App& app = *program.add_subcommand(
       "gate-simulation", "count how often the gate's answer about seconds errs on a simulated machine");
-  app.add_option("--tries", state->num_tries,
-                 fmt::format("tries per noise and planted slowdown [default: {}]", state->num_tries))
-      ->option_text("N")
+  add_option(app, "--tries", "N", state->num_tries,
+             fmt::format("tries per noise and planted slowdown [default: {}]", state->num_tries))
       ->check(CLI::PositiveNumber);
-  app.add_option("--json", state->json_path,
-                 "also write the counts as JSON lines to this file [default: none]")
-      ->option_text("FILE");
+  add_option(app, "--json", "FILE", state->json_path,
+             "also write the counts as JSON lines to this file [default: none]");
   app.callback([state, &exit_code] { exit_code = gate_simulation(state->num_tries, state->json_path); });
 }
 

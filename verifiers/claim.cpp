@@ -1,19 +1,13 @@
 #include "claim.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 namespace podm::verify {
 
 std::string to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kPass:
-      return "pass";
-    case Verdict::kFail:
-      return "fail";
-    case Verdict::kNotRun:
-      break;
-  }
-  return "not_run";
+  constexpr std::array kWords{"pass", "fail", "not_run"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
 
 std::shared_ptr<nlohmann::json> ClaimResult::empty_details() {

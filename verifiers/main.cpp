@@ -53,57 +53,54 @@ CLI::Validator angle_from(double least, double most) {
           ""};
 }
 
+// Adds an option whose value help shows as `type`.
+template <class Value>
+CLI::Option* add_option(CLI::App& app, const char* name, const char* type, Value& value,
+                        const std::string& description) {
+  return app.add_option(name, value, description)->option_text(type);
+}
+
 void declare_inputs(CLI::App& app, Command& command) {
   Options& options = command.options;
-  app.add_option("MESH", options.mesh_path,
-                 "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen, Abaqus, Exodus II;\nalso .gz")
-      ->option_text(" ")
+  add_option(app, "MESH", " ", options.mesh_path,
+             "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen, Abaqus, Exodus II;\nalso .gz")
       ->required();
   app.option_defaults()->group("Inputs");
-  app.add_option("--image", options.image_path,
-                 "segmented image: NIfTI, NRRD, MetaImage or INR; for the claims labels,\n"
-                 "surface_vertices and fidelity, and to compare its topology with the mesh's")
-      ->option_text("FILE");
-  app.add_option("--space", command.space,
-                 "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
-                 "[default: as stated in its file, otherwise RAS]")
-      ->option_text("RAS|LPS|voxel")
+  add_option(app, "--image", "FILE", options.image_path,
+             "segmented image: NIfTI, NRRD, MetaImage or INR; for the claims labels,\n"
+             "surface_vertices and fidelity, and to compare its topology with the mesh's");
+  add_option(app, "--space", "RAS|LPS|voxel", command.space,
+             "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
+             "[default: as stated in its file, otherwise RAS]")
       ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
-  app.add_option("--schedule", options.schedule_path,
-                 "leaf grid and schedule of a run, for the claim conformity [default: none]")
-      ->option_text("FILE");
+  add_option(app, "--schedule", "FILE", options.schedule_path,
+             "leaf grid and schedule of a run, for the claim conformity [default: none]");
 }
 
 // Declares the options of `podm mesh` that select a part of the image's labels.
 void declare_selection(CLI::App& app, Command& command) {
   app.option_defaults()->group("Selection of labels, as given to podm mesh");
   CLI::Option* image = app.get_option("--image");
-  app.add_option("--labels", command.labels, "keep only these label values, e.g. 1,3-7 [default: all]")
-      ->option_text("RANGES")
+  add_option(app, "--labels", "RANGES", command.labels,
+             "keep only these label values, e.g. 1,3-7 [default: all]")
       ->needs(image);
-  app.add_option("--drop", command.drop, "turn these label values into background [default: none]")
-      ->option_text("RANGES")
+  add_option(app, "--drop", "RANGES", command.drop, "turn these label values into background [default: none]")
       ->needs(image);
-  app.add_option("--merge", command.merges,
-                 "merge label values into the first, e.g. 2,3=kidney; repeatable [default: none]")
-      ->option_text("VALUES=NAME")
+  add_option(app, "--merge", "VALUES=NAME", command.merges,
+             "merge label values into the first, e.g. 2,3=kidney; repeatable [default: none]")
       ->allow_extra_args(false)
       ->needs(image);
-  app.add_option("--drop-islands", command.options.selection.drop_islands_mm3,
-                 "components of a label below this volume, mm^3, join a neighbour [default: none]")
-      ->option_text("MM3")
+  add_option(app, "--drop-islands", "MM3", command.options.selection.drop_islands_mm3,
+             "components of a label below this volume, mm^3, join a neighbour [default: none]")
       ->check(positive())
       ->needs(image);
-  app.add_option("--background", command.options.selection.background,
-                 fmt::format("label value of the background in mesh and image; a foreground label 0 is then\n"
-                             "reported as VALUE [default: {}]",
-                             command.options.selection.background))
-      ->option_text("VALUE");
-  app.add_option(
-         "--smooth", command.options.smooth_mm,
-         "width by which interfaces of the image were smoothed [default: as stated in the mesh file,\n"
-         "otherwise none]")
-      ->option_text("MM")
+  add_option(app, "--background", "VALUE", command.options.selection.background,
+             fmt::format("label value of the background in mesh and image; a foreground label 0 is then\n"
+                         "reported as VALUE [default: {}]",
+                         command.options.selection.background));
+  add_option(app, "--smooth", "MM", command.options.smooth_mm,
+             "width by which interfaces of the image were smoothed [default: as stated in the mesh file,\n"
+             "otherwise none]")
       ->check(positive())
       ->needs(image);
 }
@@ -115,96 +112,80 @@ void declare_claims(CLI::App& app, Command& command) {
   for (std::size_t i = 0; i < all_claims().size(); ++i)
     names += fmt::format("{}{}", i == 0 ? "" : i % kNamesPerLine == 0 ? ",\n" : ", ", all_claims()[i].name);
   app.option_defaults()->group("Claims and their bounds");
-  app.add_option(
-         "--claims", command.claims,
-         fmt::format(
-             "check only these, separated by commas [default: all whose inputs and bounds are given]:\n{}",
-             names))
-      ->option_text("NAMES");
-  app.add_option("--radius-edge", options.radius_edge_bound,
-                 fmt::format("circumradius over shortest edge is below this [default: {}]",
-                             options.radius_edge_bound))
-      ->option_text("RATIO")
+  add_option(
+      app, "--claims", "NAMES", command.claims,
+      fmt::format(
+          "check only these, separated by commas [default: all whose inputs and bounds are given]:\n{}",
+          names));
+  add_option(
+      app, "--radius-edge", "RATIO", options.radius_edge_bound,
+      fmt::format("circumradius over shortest edge is below this [default: {}]", options.radius_edge_bound))
       ->check(positive());
-  app.add_option("--angle", options.angle_bound_deg,
-                 fmt::format("angles of boundary and interface facets are above this [default: {}]",
-                             options.angle_bound_deg))
-      ->option_text("DEGREES")
+  add_option(app, "--angle", "DEGREES", options.angle_bound_deg,
+             fmt::format("angles of boundary and interface facets are above this [default: {}]",
+                         options.angle_bound_deg))
       ->check(angle_from(0, 60));
-  app.add_option("--radius", options.radius_mm, "size: largest circumradius of a cell, mm [default: none]")
-      ->option_text("MM")
+  add_option(app, "--radius", "MM", options.radius_mm,
+             "size: largest circumradius of a cell, mm [default: none]")
       ->check(positive());
-  app.add_option("--radius-of", command.radius_of,
-                 "size: the same for one label value; repeatable [default: --radius]")
-      ->option_text("LABEL=MM")
+  add_option(app, "--radius-of", "LABEL=MM", command.radius_of,
+             "size: the same for one label value; repeatable [default: --radius]")
       ->allow_extra_args(false);
   CLI::Option* size_image =
-      app.add_option("--size-image", options.size_image_path,
-                     "size: local bounds, a volume of lengths in mm as given to podm mesh [default: none]")
-          ->option_text("FILE");
-  app.add_option(
-         "--size-factor", options.size_factor,
-         fmt::format(
-             "factor of these bounds; podm mesh records that of a target as size_image_factor [default: {}]",
-             options.size_factor))
-      ->option_text("X")
+      add_option(app, "--size-image", "FILE", options.size_image_path,
+                 "size: local bounds, a volume of lengths in mm as given to podm mesh [default: none]");
+  add_option(
+      app, "--size-factor", "X", options.size_factor,
+      fmt::format(
+          "factor of these bounds; podm mesh records that of a target as size_image_factor [default: {}]",
+          options.size_factor))
       ->check(positive())
       ->needs(size_image);
   CLI::Option* image = app.get_option("--image");
-  app.add_option("--size-near", command.size_near,
-                 "size: largest circumradius within WIDTH mm of the interface of labels A and B,\n"
-                 "given as values; 0 is background, + joins several values of a side; repeatable\n"
-                 "[default: none; WIDTH: MM]")
-      ->option_text("A,B=MM:WIDTH")
+  add_option(app, "--size-near", "A,B=MM:WIDTH", command.size_near,
+             "size: largest circumradius within WIDTH mm of the interface of labels A and B,\n"
+             "given as values; 0 is background, + joins several values of a side; repeatable\n"
+             "[default: none; WIDTH: MM]")
       ->allow_extra_args(false)
       ->needs(image);
-  app.add_option("--grade", options.grade,
-                 "size: bounds of labels and local bounds grow by at most G mm per mm of distance,\n"
-                 "within a slack that the report states [default: no limit]")
-      ->option_text("G")
+  add_option(app, "--grade", "G", options.grade,
+             "size: bounds of labels and local bounds grow by at most G mm per mm of distance,\n"
+             "within a slack that the report states [default: no limit]")
       ->check(positive())
       ->needs(image);
-  app.add_option("--min-dihedral", options.min_dihedral_deg,
-                 "dihedral: least dihedral angle of a cell [default: as the file promises]")
-      ->option_text("DEGREES")
+  add_option(app, "--min-dihedral", "DEGREES", options.min_dihedral_deg,
+             "dihedral: least dihedral angle of a cell [default: as the file promises]")
       ->check(angle_from(0, 90));
-  app.add_option("--max-dihedral", options.max_dihedral_deg,
-                 "dihedral: largest dihedral angle of a cell [default: as the file promises]")
-      ->option_text("DEGREES")
+  add_option(app, "--max-dihedral", "DEGREES", options.max_dihedral_deg,
+             "dihedral: largest dihedral angle of a cell [default: as the file promises]")
       ->check(angle_from(90, 180));
-  app.add_option(
-         "--fidelity-voxels", options.fidelity_bound_voxels,
-         fmt::format("95 % of the interfaces of mesh and image are within this of each other [default: {},\n"
-                     "since the label may end anywhere between two voxels]",
-                     options.fidelity_bound_voxels))
-      ->option_text("VOXELS")
+  add_option(
+      app, "--fidelity-voxels", "VOXELS", options.fidelity_bound_voxels,
+      fmt::format("95 % of the interfaces of mesh and image are within this of each other [default: {},\n"
+                  "since the label may end anywhere between two voxels]",
+                  options.fidelity_bound_voxels))
       ->check(positive());
-  app.add_option(
-         "--vertex-voxels", options.vertex_bound_voxels,
-         fmt::format("surface_vertices: the image's label changes within this of each vertex of boundary\n"
-                     "and interfaces [default: {}]",
-                     options.vertex_bound_voxels))
-      ->option_text("VOXELS")
+  add_option(
+      app, "--vertex-voxels", "VOXELS", options.vertex_bound_voxels,
+      fmt::format("surface_vertices: the image's label changes within this of each vertex of boundary\n"
+                  "and interfaces [default: {}]",
+                  options.vertex_bound_voxels))
       ->check(positive());
-  app.add_option("--delta", options.delta_mm,
-                 "surface sampling distance of a PODM mesh: fidelity also passes within 2 delta, and\n"
-                 "labels reach as far, as its rules prove; podm mesh prints and records it\n"
-                 "[default: none]")
-      ->option_text("MM")
+  add_option(app, "--delta", "MM", options.delta_mm,
+             "surface sampling distance of a PODM mesh: fidelity also passes within 2 delta, and\n"
+             "labels reach as far, as its rules prove; podm mesh prints and records it\n"
+             "[default: none]")
       ->check(positive());
 }
 
 void declare_report(CLI::App& app, Command& command) {
   Options& options = command.options;
   app.option_defaults()->group("Run and report");
-  app.add_option("--json", options.json_path,
-                 "write the report as JSON, - for standard output; its schema is podm-verify/1")
-      ->option_text("FILE");
-  app.add_option("--extract-bad", options.extract_bad_path,
-                 "write the cells that violate a claim, and the claim, as .vtu")
-      ->option_text("FILE");
-  app.add_option("--threads", options.threads, "verdicts do not depend on it [default: all cores]")
-      ->option_text("N")
+  add_option(app, "--json", "FILE", options.json_path,
+             "write the report as JSON, - for standard output; its schema is podm-verify/1");
+  add_option(app, "--extract-bad", "FILE", options.extract_bad_path,
+             "write the cells that violate a claim, and the claim, as .vtu");
+  add_option(app, "--threads", "N", options.threads, "verdicts do not depend on it [default: all cores]")
       ->check(CLI::Range(1, 4096));
   app.add_flag("--quiet", command.quiet, "print no text report");
   app.set_version_flag("--version", std::string("podm-verify " PODM_VERSION "\n") + build_info());

@@ -1,7 +1,5 @@
 #include "experiments/expectation.h"
 
-#include <algorithm>
-
 #include "options/option_keys.h"
 #include "rows/order_statistics.h"
 #include "rows/table.h"

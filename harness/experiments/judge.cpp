@@ -210,20 +210,6 @@ Judgement conclude(const Claim& claim, const std::vector<Attempt>& attempts) {
 
 }  // namespace
 
-std::string to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kHolds:
-      return "holds";
-    case Verdict::kDoesNotHold:
-      return "does_not_hold";
-    case Verdict::kNotResolved:
-      return "not_resolved";
-    case Verdict::kCannotBeDecided:
-      break;
-  }
-  return "cannot_be_decided";
-}
-
 Judgement judge(const Claim& claim, const std::vector<Row>& rows) {
   std::vector<Attempt> attempts;
   for (const std::string& pattern : claim.trials.empty() ? std::vector<std::string>{""} : claim.trials)

@@ -1,6 +1,7 @@
 // Judges a claim by rows.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +12,9 @@
 namespace podm::bench {
 
 enum class Verdict { kHolds, kDoesNotHold, kNotResolved, kCannotBeDecided };
-/// "holds", "does_not_hold", "not_resolved", "cannot_be_decided".
-std::string to_string(Verdict verdict);
+constexpr std::array<const char*, 4> names_of(Verdict) {
+  return {"holds", "does_not_hold", "not_resolved", "cannot_be_decided"};
+}
 
 struct Judgement {
   Verdict verdict = Verdict::kCannotBeDecided;

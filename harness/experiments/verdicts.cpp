@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -16,17 +17,8 @@ constexpr const char* kSchema = "podm-bench-verdicts/2";
 constexpr const char* kWithdrawn = "withdrawn";
 
 const char* in_words(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kHolds:
-      return "holds";
-    case Verdict::kDoesNotHold:
-      return "DOES NOT HOLD";
-    case Verdict::kNotResolved:
-      return "not resolved";
-    case Verdict::kCannotBeDecided:
-      break;
-  }
-  return "cannot be decided";
+  constexpr std::array kWords{"holds", "DOES NOT HOLD", "not resolved", "cannot be decided"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
 
 std::string reason_with_note(const Claim& claim, const Judgement& judgement) {

@@ -15,9 +15,8 @@ struct Work : WorkRecord {
   std::optional<std::uint64_t> cells, vertices;
   std::optional<std::string> mesh_sha256;
   static constexpr auto fields() {
-    return std::tuple_cat(
-        std::tuple{field_if_any("cells", &Work::cells), field_if_any("vertices", &Work::vertices)},
-        WorkRecord::fields(), std::tuple{field_if_any("mesh_sha256", &Work::mesh_sha256)});
+    return std::tuple_cat(PODM_FIELDS(Work, (cells), (vertices)), WorkRecord::fields(),
+                          PODM_FIELDS(Work, (mesh_sha256)));
   }
 };
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "gate/simulated_machine.h"
 #include "rows/binomial.h"
 #include "rows/order_statistics.h"

@@ -28,20 +28,9 @@ struct GateTries {
   std::optional<double> median_rounds = {};         ///< rounds per try
   std::optional<double> rounds_for_an_answer = {};  ///< median over the tries that are not resolved
   static constexpr auto fields() {
-    using T = GateTries;
-    return std::tuple{field("basis", &T::basis),
-                      field_if_any("clock", &T::clock),
-                      field_if_any("starts", &T::starts),
-                      field_if_any("noise_percent", &T::noise_percent),
-                      field("planted_percent", &T::planted_percent),
-                      field("tries", &T::tries),
-                      field("slower", &T::slower),
-                      field("not_slower", &T::not_slower),
-                      field("not_resolved", &T::not_resolved),
-                      field_if_any("slower_share_low", &T::slower_share_low),
-                      field_if_any("slower_share_high", &T::slower_share_high),
-                      field_if_any("median_rounds", &T::median_rounds),
-                      field_if_any("rounds_for_an_answer", &T::rounds_for_an_answer)};
+    return PODM_FIELDS(GateTries, basis, (clock), (starts), (noise_percent), planted_percent, tries, slower,
+                       not_slower, not_resolved, (slower_share_low), (slower_share_high), (median_rounds),
+                       (rounds_for_an_answer));
   }
 };
 

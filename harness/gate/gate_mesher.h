@@ -14,10 +14,7 @@ struct GateTrial {
   std::string name;
   std::string image;  ///< the name that `podm mesh` takes
   double radius_mm = 0;
-  static constexpr auto fields() {
-    using T = GateTrial;
-    return std::tuple{field("name", &T::name), field("image", &T::image), field("radius_mm", &T::radius_mm)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(GateTrial, name, image, radius_mm); }
   bool operator==(const GateTrial&) const = default;
 };
 

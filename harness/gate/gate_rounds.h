@@ -20,11 +20,7 @@ struct GateProcess {
   bool is_head = false;  ///< one process of each round is the base
   int planted_percent = 0;
   double cpu_s = 0, wall_s = 0;  ///< with the planted seconds
-  static constexpr auto fields() {
-    using P = GateProcess;
-    return std::tuple{field("is_head", &P::is_head), field("planted_percent", &P::planted_percent),
-                      field("cpu_s", &P::cpu_s), field("wall_s", &P::wall_s)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(GateProcess, is_head, planted_percent, cpu_s, wall_s); }
 };
 
 /// Computes on this thread for the planted share of the process's processor seconds, and adds the seconds
@@ -41,11 +37,7 @@ struct GateRound {
   ProgramRecord podm;
   EnvironmentRecord environment;
   static constexpr auto fields() {
-    using R = GateRound;
-    return std::tuple{field("schema", &R::schema),          field("round", &R::round),
-                      field("order_seed", &R::order_seed),  field("trial", &R::trial),
-                      field("processes", &R::processes),    field("podm", &R::podm),
-                      field("environment", &R::environment)};
+    return PODM_FIELDS(GateRound, schema, round, order_seed, trial, processes, podm, environment);
   }
 };
 

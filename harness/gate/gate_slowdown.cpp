@@ -5,18 +5,6 @@
 
 namespace podm::bench {
 
-const char* to_string(Answer answer) {
-  switch (answer) {
-    case Answer::kNotSlower:
-      return "not slower";
-    case Answer::kSlower:
-      return "slower";
-    case Answer::kNotResolved:
-      break;
-  }
-  return "not resolved";
-}
-
 double Slowdown::rounds_for_an_answer() const {
   const double too_wide = (ratio.high - ratio.low) / (kSevere - kNoticeable);
   return std::ceil(num_rounds * too_wide * too_wide);

@@ -16,8 +16,7 @@ struct Round {
 };
 
 enum class Answer { kNotSlower, kSlower, kNotResolved };
-/// "not slower", "slower", "not resolved".
-const char* to_string(Answer answer);
+constexpr std::array<const char*, 3> names_of(Answer) { return {"not slower", "slower", "not resolved"}; }
 
 /// The rule: slower if the interval of head over base lies above kNoticeable; otherwise not slower if it lies
 /// below kSevere. An interval that is narrower than kSevere - kNoticeable always gives an answer. The rule

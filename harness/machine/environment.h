@@ -2,8 +2,6 @@
 // reads "unavailable: why".
 #pragma once
 
-#include <string>
-
 #include "machine/machine.h"
 #include "process/programs.h"
 #include "rows/row.h"

@@ -1,11 +1,6 @@
 #include "machine/identity.h"
 
 #include <fmt/format.h>
-#if defined(__x86_64__)
-#include <cpuid.h>
-#endif
-
-#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -16,10 +11,6 @@ namespace podm::bench {
 namespace {
 
 constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
-
-std::uint32_t bits(std::uint32_t word, int first, int number) {
-  return (word >> first) & ((1U << number) - 1);
-}
 
 std::map<std::string, std::string> values_of(std::istream& lines) {
   std::map<std::string, std::string> values;  // values of the first processor
@@ -59,17 +50,6 @@ Count memory_gib() {
 
 }  // namespace
 
-CpuModel decode_cpuid(const CpuidLeaf& leaf_0, const CpuidLeaf& leaf_1) {
-  std::string vendor(12, '\0');
-  const std::uint32_t parts[] = {leaf_0[1], leaf_0[3], leaf_0[2]};  // ebx, edx, ecx
-  std::memcpy(vendor.data(), parts, vendor.size());
-  const std::uint32_t signature = leaf_1[0];
-  std::uint64_t family = bits(signature, 8, 4), model = bits(signature, 4, 4);
-  if (family == 6 || family == 15) model += std::uint64_t{bits(signature, 16, 4)} << 4;
-  if (family == 15) family += bits(signature, 20, 8);
-  return {vendor, family, model, std::uint64_t{bits(signature, 0, 4)}};
-}
-
 CpuModel cpu_model_in(std::istream& cpuinfo) {
   const auto values = values_of(cpuinfo);
   const bool is_arm = values.contains("CPU implementer");
@@ -80,20 +60,9 @@ CpuModel cpu_model_in(std::istream& cpuinfo) {
           number_in(values, is_arm ? "CPU revision" : "stepping")};
 }
 
-CpuModel this_cpu_model() {
-#if defined(__x86_64__)
-  CpuidLeaf leaf_0{}, leaf_1{};
-  const auto ask = [](unsigned number, CpuidLeaf& leaf) {
-    return __get_cpuid(number, &leaf[0], &leaf[1], &leaf[2], &leaf[3]) != 0;
-  };
-  if (ask(0, leaf_0) && ask(1, leaf_1)) return decode_cpuid(leaf_0, leaf_1);
-#endif
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  return cpu_model_in(cpuinfo);
-}
-
 IdentityRecord identity_of(hwloc_topology_t topology) {
-  const CpuModel cpu = this_cpu_model();
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  const CpuModel cpu = cpu_model_in(cpuinfo);
   return {.vendor = cpu.vendor,
           .family = cpu.family,
           .model = cpu.model,

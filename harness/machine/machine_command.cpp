@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "machine/commands.h"
 #include "machine/machine.h"
 #include "machine/probe.h"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -44,49 +45,32 @@ struct Codec<JsonPointer> {
   }
 };
 
-template <>
-struct Codec<std::string> {
-  static Json write(const std::string& value) { return value; }
-  static std::string read(const Json& json, const std::string& place) {
-    if (!json.is_string()) fail_at(place, "must be a string");
-    return json.get<std::string>();
-  }
-};
+// Returns what a value must be that is not of the type of `like`; empty if it is.
+inline const char* must_be(const Json& json, const std::string& /*like*/) {
+  return json.is_string() ? "" : "a string";
+}
+inline const char* must_be(const Json& json, bool /*like*/) {
+  return json.is_boolean() ? "" : "true or false";
+}
+inline const char* must_be(const Json& json, double /*like*/) { return json.is_number() ? "" : "a number"; }
+inline const char* must_be(const Json& json, int /*like*/) {
+  return json.is_number_integer() ? "" : "an integer";
+}
+inline const char* must_be(const Json& json, std::uint64_t /*like*/) {
+  const bool is_negative =
+      !json.is_number_unsigned() && json.is_number_integer() && json.get<std::int64_t>() < 0;
+  return json.is_number_integer() && !is_negative ? "" : "an integer that is not negative";
+}
+template <class T>
+concept IsPlain = std::same_as<T, std::string> || std::same_as<T, bool> || std::same_as<T, double> ||
+    std::same_as<T, int> || std::same_as<T, std::uint64_t>;
 
-template <>
-struct Codec<bool> {
-  static Json write(bool value) { return value; }
-  static bool read(const Json& json, const std::string& place) {
-    if (!json.is_boolean()) fail_at(place, "must be true or false");
-    return json.get<bool>();
-  }
-};
-
-template <>
-struct Codec<double> {
-  static Json write(double value) { return value; }
-  static double read(const Json& json, const std::string& place) {
-    if (!json.is_number()) fail_at(place, "must be a number");
-    return json.get<double>();
-  }
-};
-
-template <>
-struct Codec<int> {
-  static Json write(int value) { return value; }
-  static int read(const Json& json, const std::string& place) {
-    if (!json.is_number_integer()) fail_at(place, "must be an integer");
-    return json.get<int>();
-  }
-};
-
-template <>
-struct Codec<std::uint64_t> {
-  static Json write(std::uint64_t value) { return value; }
-  static std::uint64_t read(const Json& json, const std::string& place) {
-    if (!json.is_number_integer() || (!json.is_number_unsigned() && json.get<std::int64_t>() < 0))
-      fail_at(place, "must be an integer that is not negative");
-    return json.get<std::uint64_t>();
+template <IsPlain T>
+struct Codec<T> {
+  static Json write(const T& value) { return value; }
+  static T read(const Json& json, const std::string& place) {
+    if (const std::string type = must_be(json, T()); !type.empty()) fail_at(place, "must be " + type);
+    return json.get<T>();
   }
 };
 

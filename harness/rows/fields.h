@@ -4,10 +4,7 @@
 //   struct Counter {
 //     double value;
 //     std::optional<double> running_share;
-//     static constexpr auto fields() {
-//       return std::tuple{field("value", &Counter::value),
-//                         field_if_any("running_share", &Counter::running_share)};
-//     }
+//     static constexpr auto fields() { return PODM_FIELDS(Counter, value, (running_share)); }
 //   };
 //
 // A struct with a member `JsonPointer as_written` reads a part of an object that another program wrote. It
@@ -17,6 +14,7 @@
 // is long: few of the sources that use rows read or write JSON.
 #pragma once
 
+#include <boost/preprocessor.hpp>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -90,6 +88,16 @@ constexpr auto field_if_any(const char* key, JsonPointer Struct::*member) {
   return Field<Struct, JsonPointer>{key, member, true};
 }
 
+/// A std::tuple of the fields of a struct whose keys are the names of their members: `field` for each, and
+/// `field_if_any` for a member in parentheses.
+#define PODM_FIELDS(Struct, ...)                                                                         \
+  std::tuple {                                                                                           \
+    BOOST_PP_SEQ_ENUM(BOOST_PP_SEQ_TRANSFORM(PODM_FIELD, Struct, BOOST_PP_VARIADIC_TO_SEQ(__VA_ARGS__))) \
+  }
+#define PODM_FIELD(repetition, Struct, member)                        \
+  BOOST_PP_IIF(BOOST_PP_IS_BEGIN_PARENS(member), field_if_any, field) \
+  (BOOST_PP_STRINGIZE(BOOST_PP_REMOVE_PARENS(member)), &Struct::BOOST_PP_REMOVE_PARENS(member))
+
 template <class T>
 concept HasFields = requires {
   T::fields();
@@ -103,12 +111,6 @@ template <class T>
 concept HasNames = requires(T value) {
   names_of(value);
 };
-
-/// Calls `visit` with each field of a struct.
-template <HasFields T, class Visit>
-constexpr void for_each_field(const Visit& visit) {
-  std::apply([&](const auto&... fields) { (visit(fields), ...); }, T::fields());
-}
 
 template <HasNames E>
 std::string to_string(E value) {

@@ -12,20 +12,13 @@ namespace podm::bench {
 /// Identifies a kind of machine beyond the processor's name, which virtual machines shorten to that of a
 /// family. A field that the system does not report reads "unavailable: why".
 struct IdentityRecord {
-  std::string vendor;                               ///< CPUID's, "GenuineIntel"
-  Count family = 0UL, model = 0UL, stepping = 0UL;  ///< from CPUID, with the extended parts added
+  std::string vendor;                                                 ///< "GenuineIntel"
+  Count family = 0UL, model = 0UL, stepping = 0UL;                    ///< with the extended parts added
   std::variant<ByName<std::uint64_t>, Unavailable> cache_bytes = {};  ///< data caches: "L1", "L2", ...
   Count memory_gib = 0UL;  ///< rounded up; the kernel reserves a varying part of the last one
   std::string kernel;      ///< "Linux 6.1.0 x86_64"
   static constexpr auto fields() {
-    using I = IdentityRecord;
-    return std::tuple{field("vendor", &I::vendor),
-                      field("family", &I::family),
-                      field("model", &I::model),
-                      field("stepping", &I::stepping),
-                      field("cache_bytes", &I::cache_bytes),
-                      field("memory_gib", &I::memory_gib),
-                      field("kernel", &I::kernel)};
+    return PODM_FIELDS(IdentityRecord, vendor, family, model, stepping, cache_bytes, memory_gib, kernel);
   }
   bool operator==(const IdentityRecord&) const = default;
 };
@@ -35,11 +28,7 @@ struct ProbeRecord {
   double chase_ns = 0;        ///< a load that waits for the load before it, in random order
   double triad_gb_per_s = 0;  ///< bytes of a[i] = b[i] + s c[i] per second, 1e9
   double integer_ns = 0;      ///< an addition that waits for the addition before it
-  static constexpr auto fields() {
-    using P = ProbeRecord;
-    return std::tuple{field("chase_ns", &P::chase_ns), field("triad_gb_per_s", &P::triad_gb_per_s),
-                      field("integer_ns", &P::integer_ns)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ProbeRecord, chase_ns, triad_gb_per_s, integer_ns); }
   bool operator==(const ProbeRecord&) const = default;
 };
 using Probe = std::variant<ProbeRecord, Unavailable>;
@@ -52,14 +41,8 @@ struct MachineRecord {
   int usable_processors = 0;
   std::optional<IdentityRecord> identity;  ///< rows from before November 2026 have none
   static constexpr auto fields() {
-    using M = MachineRecord;
-    return std::tuple{field("cpu", &M::cpu),
-                      field("packages", &M::packages),
-                      field("numa_nodes", &M::numa_nodes),
-                      field("cores", &M::cores),
-                      field("processors", &M::processors),
-                      field("usable_processors", &M::usable_processors),
-                      field_if_any("identity", &M::identity)};
+    return PODM_FIELDS(MachineRecord, cpu, packages, numa_nodes, cores, processors, usable_processors,
+                       (identity));
   }
   bool operator==(const MachineRecord&) const = default;
 };

@@ -30,30 +30,21 @@ struct InputOfMesher {
   std::optional<std::string> path, sha256;
   std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
   JsonPointer as_written;
-  static constexpr auto fields() {
-    using I = InputOfMesher;
-    return std::tuple{field_if_any("path", &I::path), field_if_any("sha256", &I::sha256),
-                      field_if_any("affine", &I::affine)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(InputOfMesher, (path), (sha256), (affine)); }
 };
 
 struct UsedSizes {
   std::optional<double> radius_mm, size_image_factor, delta_mm;
   JsonPointer as_written;
   static constexpr auto fields() {
-    return std::tuple{field_if_any("radius_mm", &UsedSizes::radius_mm),
-                      field_if_any("size_image_factor", &UsedSizes::size_image_factor),
-                      field_if_any("delta_mm", &UsedSizes::delta_mm)};
+    return PODM_FIELDS(UsedSizes, (radius_mm), (size_image_factor), (delta_mm));
   }
 };
 
 struct ThreadsRecord {
   std::optional<int> asked, used;
   JsonPointer as_written;
-  static constexpr auto fields() {
-    return std::tuple{field_if_any("asked", &ThreadsRecord::asked),
-                      field_if_any("used", &ThreadsRecord::used)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ThreadsRecord, (asked), (used)); }
 };
 
 /// Times of virtual workers.
@@ -65,10 +56,7 @@ struct VirtualRecord {
   std::optional<std::string> model_sha256;
   JsonPointer as_written;
   static constexpr auto fields() {
-    return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
-                      field_if_any("phases_s", &VirtualRecord::phases_s),
-                      field_if_any("worker_s", &VirtualRecord::worker_s),
-                      field_if_any("model_sha256", &VirtualRecord::model_sha256)};
+    return PODM_FIELDS(VirtualRecord, (refine_s), (phases_s), (worker_s), (model_sha256));
   }
 };
 
@@ -77,10 +65,7 @@ struct OutcomesRecord {
   std::optional<std::uint64_t> committed, lock_conflict, out_of_leaf;
   JsonPointer as_written;
   static constexpr auto fields() {
-    using O = OutcomesRecord;
-    return std::tuple{field_if_any("committed", &O::committed),
-                      field_if_any("lock_conflict", &O::lock_conflict),
-                      field_if_any("out_of_leaf", &O::out_of_leaf)};
+    return PODM_FIELDS(OutcomesRecord, (committed), (lock_conflict), (out_of_leaf));
   }
 };
 
@@ -88,11 +73,7 @@ struct OutcomesRecord {
 struct OverheadRecord {
   std::optional<double> contention, begging, rollback;
   JsonPointer as_written;
-  static constexpr auto fields() {
-    using O = OverheadRecord;
-    return std::tuple{field_if_any("contention", &O::contention), field_if_any("begging", &O::begging),
-                      field_if_any("rollback", &O::rollback)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(OverheadRecord, (contention), (begging), (rollback)); }
 };
 
 /// The work that made the mesh, in numbers that one thread repeats exactly.
@@ -101,40 +82,29 @@ struct WorkRecord {
   std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
   JsonPointer as_written;
   static constexpr auto fields() {
-    using W = WorkRecord;
-    return std::tuple{field_if_any("insertions", &W::insertions),
-                      field_if_any("removals", &W::removals),
-                      field_if_any("classified_cells", &W::classified_cells),
-                      field_if_any("conflict_tests", &W::conflict_tests),
-                      field_if_any("exact_decisions", &W::exact_decisions),
-                      field_if_any("cells_created", &W::cells_created)};
+    return PODM_FIELDS(WorkRecord, (insertions), (removals), (classified_cells), (conflict_tests),
+                       (exact_decisions), (cells_created));
   }
 };
 
 /// Seconds of a rank in one phase: processor seconds outside of collectives, and seconds in collectives.
 struct SpentRecord {
   double computing_s = 0, waiting_s = 0, network_s = 0;
-  static constexpr auto fields() {
-    using S = SpentRecord;
-    return std::tuple{field("computing_s", &S::computing_s), field("waiting_s", &S::waiting_s),
-                      field("network_s", &S::network_s)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(SpentRecord, computing_s, waiting_s, network_s); }
 };
 
 struct RankRecord {
   std::uint64_t cells = 0;
   ByName<SpentRecord> spent;
   JsonPointer as_written;
-  static constexpr auto fields() {
-    return std::tuple{field("cells", &RankRecord::cells), field("spent", &RankRecord::spent)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(RankRecord, cells, spent); }
 };
 
 /// A round of all ranks.
 struct RoundRecord {
   std::uint64_t deferred = 0;  ///< cells
   JsonPointer as_written;
-  static constexpr auto fields() { return std::tuple{field("deferred", &RoundRecord::deferred)}; }
+  static constexpr auto fields() { return PODM_FIELDS(RoundRecord, deferred); }
 };
 
 /// The ranks as podm-mpi reports them.
@@ -144,20 +114,13 @@ struct RanksRecord {
   std::vector<RoundRecord> rounds;
   std::vector<RankRecord> by_rank;
   JsonPointer as_written;
-  static constexpr auto fields() {
-    using R = RanksRecord;
-    return std::tuple{field("number", &R::number), field("imbalance", &R::imbalance),
-                      field("rounds", &R::rounds), field("by_rank", &R::by_rank)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(RanksRecord, number, imbalance, rounds, by_rank); }
 };
 
 /// Cells with a dihedral angle out of bounds, by whether a vertex of theirs is free.
 struct PoorCellsRecord {
   std::uint64_t with_free_vertex = 0, without = 0;
-  static constexpr auto fields() {
-    using P = PoorCellsRecord;
-    return std::tuple{field("with_free_vertex", &P::with_free_vertex), field("without", &P::without)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(PoorCellsRecord, with_free_vertex, without); }
 };
 
 /// The effect of moving vertices (R7) on dihedral angles.
@@ -166,10 +129,7 @@ struct PerturbedRecord {
   PoorCellsRecord before, after;
   ByName<std::uint64_t> unmoved;  ///< cells of `after`, by reason
   static constexpr auto fields() {
-    using P = PerturbedRecord;
-    return std::tuple{field("min_dihedral_deg", &P::min_dihedral_deg),
-                      field("max_dihedral_deg", &P::max_dihedral_deg), field("before", &P::before),
-                      field("after", &P::after), field("unmoved", &P::unmoved)};
+    return PODM_FIELDS(PerturbedRecord, min_dihedral_deg, max_dihedral_deg, before, after, unmoved);
   }
 };
 
@@ -180,15 +140,8 @@ struct OptimizationRecord {
   ByName<std::uint64_t> obstacles;  ///< of the cells beyond the bounds
   ByName<std::uint64_t> successes;  ///< operations that improved cells, by kind
   static constexpr auto fields() {
-    using O = OptimizationRecord;
-    return std::tuple{field("least_aim_deg", &O::least_aim_deg),
-                      field("largest_aim_deg", &O::largest_aim_deg),
-                      field("beyond_aim_before", &O::beyond_aim_before),
-                      field("beyond_aim", &O::beyond_aim),
-                      field("beyond_bounds_before", &O::beyond_bounds_before),
-                      field("beyond_bounds", &O::beyond_bounds),
-                      field("obstacles", &O::obstacles),
-                      field("successes", &O::successes)};
+    return PODM_FIELDS(OptimizationRecord, least_aim_deg, largest_aim_deg, beyond_aim_before, beyond_aim,
+                       beyond_bounds_before, beyond_bounds, obstacles, successes);
   }
 };
 
@@ -196,10 +149,7 @@ struct OptimizationRecord {
 struct DihedralRecord {
   double least = 0, largest = 0;
   std::vector<std::uint64_t> counts;  ///< one bin per degree, from 0; six angles per cell
-  static constexpr auto fields() {
-    using D = DihedralRecord;
-    return std::tuple{field("least", &D::least), field("largest", &D::largest), field("counts", &D::counts)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(DihedralRecord, least, largest, counts); }
 };
 
 /// Compares the labels of a mesh with those of its image: counts labels whose number of components, and
@@ -208,9 +158,7 @@ struct DihedralRecord {
 struct TopologyRecord {
   std::uint64_t labels = 0, components_as_image = 0, euler_as_image = 0;
   static constexpr auto fields() {
-    using T = TopologyRecord;
-    return std::tuple{field("labels", &T::labels), field("components_as_image", &T::components_as_image),
-                      field("euler_as_image", &T::euler_as_image)};
+    return PODM_FIELDS(TopologyRecord, labels, components_as_image, euler_as_image);
   }
 };
 
@@ -218,9 +166,7 @@ struct TopologyRecord {
 /// bounds.
 struct JudgingRecord {
   std::vector<std::string> claims, options;
-  static constexpr auto fields() {
-    return std::tuple{field("claims", &JudgingRecord::claims), field("options", &JudgingRecord::options)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(JudgingRecord, claims, options); }
 };
 
 /// A mesher's record of a mesh.
@@ -259,40 +205,15 @@ struct MeshRecord {
   std::string stop_reason;
   JsonPointer as_written;
   static constexpr auto fields() {
-    using M = MeshRecord;
-    return std::tuple{field_if_any("schema", &M::schema),
-                      field_if_any("input", &M::input),
-                      field_if_any("mesh", &M::mesh),
-                      field_if_any("algorithm", &M::algorithm),
-                      field_if_any("options", &M::options),
-                      field_if_any("used", &M::used),
-                      field_if_any("verify", &M::verify),
-                      field_if_any("seed", &M::seed),
-                      field_if_any("threads", &M::threads),
-                      field_if_any("virtual", &M::virtual_time),
-                      field_if_any("ranks", &M::ranks),
-                      field("phases_s", &M::phases_s),
-                      field("cells", &M::cells),
-                      field("vertices", &M::vertices),
-                      field_if_any("boundary_facets", &M::boundary_facets),
-                      field_if_any("surface_cells", &M::surface_cells),
-                      field_if_any("cells_per_second", &M::cells_per_second),
-                      field("refine_cells_per_second", &M::refine_cells_per_second),
-                      field_if_any("outcomes", &M::outcomes),
-                      field_if_any("overhead_s", &M::overhead_s),
-                      field_if_any("hops", &M::hops),
-                      field_if_any("hops_by_kind", &M::hops_by_kind),
-                      field_if_any("counters", &M::counters),
-                      field_if_any("perturbed", &M::perturbed),
-                      field_if_any("optimization", &M::optimization),
-                      field_if_any("promised_dihedral_deg", &M::promised_dihedral_deg),
-                      field("guarantees", &M::guarantees),
-                      field_if_any("mesh_sha256", &M::mesh_sha256),
-                      field_if_any("verdicts", &M::verdicts),
-                      field_if_any("dihedral_deg", &M::dihedral_deg),
-                      field_if_any("topology", &M::topology),
-                      field_if_any("promises", &M::promises),
-                      field("stop_reason", &M::stop_reason)};
+    return std::tuple_cat(
+        PODM_FIELDS(MeshRecord, (schema), (input), (mesh), (algorithm), (options), (used), (verify), (seed),
+                    (threads)),
+        std::tuple{field_if_any("virtual", &MeshRecord::virtual_time)},
+        PODM_FIELDS(MeshRecord, (ranks), phases_s, cells, vertices, (boundary_facets), (surface_cells),
+                    (cells_per_second), refine_cells_per_second, (outcomes), (overhead_s), (hops),
+                    (hops_by_kind), (counters), (perturbed), (optimization), (promised_dihedral_deg),
+                    guarantees, (mesh_sha256), (verdicts), (dihedral_deg), (topology), (promises),
+                    stop_reason));
   }
 };
 
@@ -307,10 +228,7 @@ struct LatencyRecord {
   double ns = 0, cycles = 0;   ///< of one load
   double huge_page_share = 0;  ///< share of the working set on huge pages
   static constexpr auto fields() {
-    using L = LatencyRecord;
-    return std::tuple{field("working_set_bytes", &L::working_set_bytes), field("node", &L::node),
-                      field("ns", &L::ns), field("cycles", &L::cycles),
-                      field("huge_page_share", &L::huge_page_share)};
+    return PODM_FIELDS(LatencyRecord, working_set_bytes, node, ns, cycles, huge_page_share);
   }
 };
 
@@ -325,16 +243,8 @@ struct MemoryLevel {
   std::optional<double> huge_page_share;
   std::optional<Measured> likwid_bench_cycles_per_line;
   static constexpr auto fields() {
-    using M = MemoryLevel;
-    return std::tuple{field("level", &M::level),
-                      field("module", &M::module),
-                      field("size_bytes", &M::size_bytes),
-                      field_if_any("working_set_bytes", &M::working_set_bytes),
-                      field_if_any("node", &M::node),
-                      field("ns", &M::ns),
-                      field("cycles", &M::cycles),
-                      field_if_any("huge_page_share", &M::huge_page_share),
-                      field_if_any("likwid_bench_cycles_per_line", &M::likwid_bench_cycles_per_line)};
+    return PODM_FIELDS(MemoryLevel, level, module, size_bytes, (working_set_bytes), (node), ns, cycles,
+                       (huge_page_share), (likwid_bench_cycles_per_line));
   }
 };
 
@@ -345,9 +255,7 @@ struct MemoryLevelsRecord {
   std::vector<MemoryLevel> memory_levels;
   std::vector<LatencyRecord> latency;  ///< one per working set, of all sizes
   static constexpr auto fields() {
-    using M = MemoryLevelsRecord;
-    return std::tuple{field("processor", &M::processor), field("pinned", &M::pinned),
-                      field("memory_levels", &M::memory_levels), field("latency", &M::latency)};
+    return PODM_FIELDS(MemoryLevelsRecord, processor, pinned, memory_levels, latency);
   }
 };
 

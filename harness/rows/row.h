@@ -44,10 +44,7 @@ struct Counter {
   Number value;
   std::string source;                   ///< the program that counted
   std::optional<double> running_share;  ///< counted share of the time, if `value` is scaled up
-  static constexpr auto fields() {
-    return std::tuple{field("value", &Counter::value), field("source", &Counter::source),
-                      field_if_any("running_share", &Counter::running_share)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(Counter, value, source, (running_share)); }
 };
 using Counters = ByName<std::variant<Counter, Unavailable>>;
 
@@ -60,14 +57,7 @@ struct ResolvedRadius {
   double seconds = 0;                   ///< time spent to find it
   std::string key;                      ///< of its line in radii.jsonl
   static constexpr auto fields() {
-    using R = ResolvedRadius;
-    return std::tuple{field("target_elements", &R::target_elements),
-                      field("radius_mm", &R::radius_mm),
-                      field("delta_mm", &R::delta_mm),
-                      field("cells", &R::cells),
-                      field("meshes", &R::meshes),
-                      field("seconds", &R::seconds),
-                      field("key", &R::key)};
+    return PODM_FIELDS(ResolvedRadius, target_elements, radius_mm, delta_mm, cells, meshes, seconds, key);
   }
   bool operator==(const ResolvedRadius&) const = default;
 };
@@ -79,11 +69,7 @@ struct InputRecord {
   std::optional<std::string> sha256;                       ///< hash of its bytes
   std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
   std::optional<ImageSize> size;
-  static constexpr auto fields() {
-    using I = InputRecord;
-    return std::tuple{field("name", &I::name), field("path", &I::path), field("sha256", &I::sha256),
-                      field_if_any("affine", &I::affine), field("size", &I::size)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(InputRecord, name, path, sha256, (affine), size); }
 };
 
 /// The result of replaying a mesh's operation log sequentially: the mesh is "equal", "differs", or the replay
@@ -108,11 +94,8 @@ struct IterationsRecord {
   double smallest_eigenvalue = 0, largest_eigenvalue = 0;  ///< of the preconditioned matrix, estimated
   double setup_s = 0, seconds = 0;                         ///< of the preconditioner, and of the iterations
   static constexpr auto fields() {
-    using I = IterationsRecord;
-    return std::tuple{field("iterations", &I::iterations),
-                      field("smallest_eigenvalue", &I::smallest_eigenvalue),
-                      field("largest_eigenvalue", &I::largest_eigenvalue), field("setup_s", &I::setup_s),
-                      field("seconds", &I::seconds)};
+    return PODM_FIELDS(IterationsRecord, iterations, smallest_eigenvalue, largest_eigenvalue, setup_s,
+                       seconds);
   }
 };
 
@@ -120,21 +103,14 @@ struct IterationsRecord {
 struct SystemRecord {
   std::uint64_t unknowns = 0;
   IterationsRecord jacobi, amg;  ///< by preconditioner: the diagonal, an algebraic multigrid
-  static constexpr auto fields() {
-    using S = SystemRecord;
-    return std::tuple{field("unknowns", &S::unknowns), field("jacobi", &S::jacobi), field("amg", &S::amg)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(SystemRecord, unknowns, jacobi, amg); }
 };
 
 /// The cost of the mesh for a solver.
 struct SolveRecord {
   std::string solver;  ///< version and licence
   SystemRecord poisson, elasticity;
-  static constexpr auto fields() {
-    using S = SolveRecord;
-    return std::tuple{field("solver", &S::solver), field("poisson", &S::poisson),
-                      field("elasticity", &S::elasticity)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(SolveRecord, solver, poisson, elasticity); }
 };
 
 /// The entry of one of the processes that ran at the same time.
@@ -145,11 +121,7 @@ struct CopyRecord {
   double refine_cells_per_second = 0;
   std::optional<double> cells_per_second;
   static constexpr auto fields() {
-    using C = CopyRecord;
-    return std::tuple{field("processor", &C::processor), field("cells", &C::cells),
-                      field("phases_s", &C::phases_s),
-                      field("refine_cells_per_second", &C::refine_cells_per_second),
-                      field("cells_per_second", &C::cells_per_second)};
+    return PODM_FIELDS(CopyRecord, processor, cells, phases_s, refine_cells_per_second, cells_per_second);
   }
 };
 
@@ -163,17 +135,8 @@ struct ProcessRecord {
   std::optional<double> bytes_per_cell_beyond_image;  ///< unset without a mesh
   Counters counters;
   static constexpr auto fields() {
-    using P = ProcessRecord;
-    return std::tuple{field("exit_code", &P::exit_code),
-                      field("signal", &P::signal),
-                      field("timeout_s", &P::timeout_s),
-                      field("memory_limit_gib", &P::memory_limit_gib),
-                      field("wall_s", &P::wall_s),
-                      field("user_s", &P::user_s),
-                      field("system_s", &P::system_s),
-                      field("peak_rss_bytes", &P::peak_rss_bytes),
-                      field("bytes_per_cell_beyond_image", &P::bytes_per_cell_beyond_image),
-                      field("counters", &P::counters)};
+    return PODM_FIELDS(ProcessRecord, exit_code, signal, timeout_s, memory_limit_gib, wall_s, user_s,
+                       system_s, peak_rss_bytes, bytes_per_cell_beyond_image, counters);
   }
 };
 
@@ -181,19 +144,13 @@ struct ProgramRecord {
   std::string sha256;                                                   ///< hash of its bytes
   std::string version;                                                  ///< the first line of its --version
   std::optional<std::variant<ByName<std::string>, Unavailable>> build;  ///< the lines "key: value" after it
-  static constexpr auto fields() {
-    return std::tuple{field("sha256", &ProgramRecord::sha256), field("version", &ProgramRecord::version),
-                      field_if_any("build", &ProgramRecord::build)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ProgramRecord, sha256, version, (build)); }
 };
 
 /// A mesher other than podm.
 struct PeerRecord {
   std::string name, sha256, version;
-  static constexpr auto fields() {
-    return std::tuple{field("name", &PeerRecord::name), field("sha256", &PeerRecord::sha256),
-                      field("version", &PeerRecord::version)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(PeerRecord, name, sha256, version); }
 };
 
 struct ProgramRecords {
@@ -203,35 +160,25 @@ struct ProgramRecords {
   std::optional<PeerRecord> peer;
   std::optional<ProgramRecord> podm_mpi;  ///< the mesher on ranks; unset if it is not built
   static constexpr auto fields() {
-    using P = ProgramRecords;
-    return std::tuple{field("podm", &P::podm), field("podm_verify", &P::podm_verify),
-                      field_if_any("peer", &P::peer), field_if_any("podm_mpi", &P::podm_mpi)};
+    return PODM_FIELDS(ProgramRecords, podm, podm_verify, (peer), (podm_mpi));
   }
 };
 
 /// Limits of this process's control groups, as the kernel writes them, or "unavailable: why".
 struct ControlGroupLimits {
   std::string cpu_max, cpuset, memory_max;
-  static constexpr auto fields() {
-    using C = ControlGroupLimits;
-    return std::tuple{field("cpu_max", &C::cpu_max), field("cpuset", &C::cpuset),
-                      field("memory_max", &C::memory_max)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ControlGroupLimits, cpu_max, cpuset, memory_max); }
 };
 
 struct Sources {
   std::string commit;
   bool dirty = false;  ///< tracked files differ from the commit
-  static constexpr auto fields() {
-    return std::tuple{field("commit", &Sources::commit), field("dirty", &Sources::dirty)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(Sources, commit, dirty); }
 };
 
 struct MemoryBytes {
   Count total = 0UL, available = 0UL;
-  static constexpr auto fields() {
-    return std::tuple{field("total", &MemoryBytes::total), field("available", &MemoryBytes::available)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(MemoryBytes, total, available); }
 };
 
 /// The machine with its state, and the build of this program. Texts may read "unavailable: why".
@@ -249,76 +196,55 @@ struct EnvironmentRecord : MachineRecord {
   std::optional<Probe> probe_after;        ///< at the end of the round, if the speed moved
   std::optional<Measured> busy_elsewhere;  ///< mean number of processors that other work kept busy
   static constexpr auto fields() {
-    using E = EnvironmentRecord;
     return std::tuple_cat(
         MachineRecord::fields(),
-        std::tuple{field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel),
-                   field("smt", &E::smt), field("cgroup", &E::cgroup), field("libraries", &E::libraries),
-                   field("compiler", &E::compiler), field("compiler_flags", &E::compiler_flags),
-                   field("build_type", &E::build_type), field("sources", &E::sources),
-                   field("load_average", &E::load_average), field("memory_bytes", &E::memory_bytes),
-                   field("governor", &E::governor),
-                   field("transparent_huge_pages", &E::transparent_huge_pages),
-                   field("numa_balancing", &E::numa_balancing), field_if_any("probe", &E::probe),
-                   field_if_any("probe_after", &E::probe_after),
-                   field_if_any("busy_elsewhere", &E::busy_elsewhere)});
+        PODM_FIELDS(EnvironmentRecord, topology_sha256, kernel, smt, cgroup, libraries, compiler,
+                    compiler_flags, build_type, sources, load_average, memory_bytes, governor,
+                    transparent_huge_pages, numa_balancing, (probe), (probe_after), (busy_elsewhere)));
   }
 };
 
+/// What is known of a trial when it has ended.
+struct TrialOutcome {
+  Status status = Status::kFailed;
+  std::string reason;                                   ///< the reason of a status that is not kOk
+  std::vector<std::string> command;                     ///< the arguments of the process
+  std::optional<MeshRecord> mesh;                       ///< the mesher's record; unset without a mesh
+  std::optional<MemoryLevelsRecord> measured;           ///< measurement of a trial that makes no mesh
+  std::optional<Replay> replay;                         ///< unset if it was not requested
+  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if a single process ran
+  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
+  double preparation_s = 0, verification_s = 0;         ///< before the mesher starts and after it has ended
+  std::string stderr_tail;                              ///< end of stderr of a trial that is not kOk
+};
+
 /// One line of a file of results.
-struct Row {
+struct Row : TrialOutcome {
   int schema = kRowSchema;
   std::string key;  ///< identifies the turn: TrialKeys
   std::string experiment, trial;
   int repeat = 1;  ///< number of the round, from 1; warm-ups and measured repeats are counted apart
   bool warmup = false;
   std::uint64_t order_seed = 0;  ///< seed of the schedule
-  Status status = Status::kFailed;
-  std::string reason;  ///< the reason of a status that is not kOk
-  JsonPointer asked;   ///< the trial's options by the keys of experiments/*.toml
+  JsonPointer asked;             ///< the trial's options by the keys of experiments/*.toml
   Basis basis = Basis::kMeasured;
-  std::vector<std::string> command;  ///< the arguments of the process
   std::optional<ResolvedRadius> resolved;
   InputRecord input;
-
-  std::optional<MeshRecord> mesh;              ///< the mesher's record; unset without a mesh
-  std::optional<MemoryLevelsRecord> measured;  ///< measurement of a trial that makes no mesh
-
-  std::optional<Replay> replay;                         ///< unset if it was not requested
-  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if a single process ran
-  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
-  std::optional<std::uint64_t> mesh_bytes;              ///< size of the mesh file
+  std::optional<std::uint64_t> mesh_bytes;  ///< size of the mesh file
   ProcessRecord process;
-  double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
-  double harness_s = 0;                          ///< time that this program spent since the row before
-  std::string stderr_tail;                       ///< end of stderr of a trial that is not kOk
-  std::optional<bool> probe_moved;               ///< true if the machine's speed moved during the row's round
+  double harness_s = 0;             ///< time that this program spent since the row before
+  std::optional<bool> probe_moved;  ///< true if the machine's speed moved during the row's round
   ProgramRecords programs;
   EnvironmentRecord environment;
 
   /// The keys before the mesher's own keys, and the keys after them.
   static constexpr auto fields_before() {
-    return std::tuple{field("schema", &Row::schema),         field("key", &Row::key),
-                      field("experiment", &Row::experiment), field("trial", &Row::trial),
-                      field("repeat", &Row::repeat),         field("warmup", &Row::warmup),
-                      field("order_seed", &Row::order_seed), field("status", &Row::status),
-                      field("reason", &Row::reason),         field("asked", &Row::asked),
-                      field("basis", &Row::basis),           field("command", &Row::command),
-                      field("resolved", &Row::resolved),     field("input", &Row::input)};
+    return PODM_FIELDS(Row, schema, key, experiment, trial, repeat, warmup, order_seed, status, reason, asked,
+                       basis, command, resolved, input);
   }
   static constexpr auto fields_after() {
-    return std::tuple{field("replay", &Row::replay),
-                      field("side_by_side", &Row::side_by_side),
-                      field_if_any("solve", &Row::solve),
-                      field("mesh_bytes", &Row::mesh_bytes),
-                      field("process", &Row::process),
-                      field("preparation_s", &Row::preparation_s),
-                      field("verification_s", &Row::verification_s),
-                      field("harness_s", &Row::harness_s),
-                      field("stderr_tail", &Row::stderr_tail),
-                      field_if_any("probe_moved", &Row::probe_moved),
-                      field("programs", &Row::programs),
-                      field("environment", &Row::environment)};
+    return PODM_FIELDS(Row, replay, side_by_side, (solve), mesh_bytes, process, preparation_s, verification_s,
+                       harness_s, stderr_tail, (probe_moved), programs, environment);
   }
 };
 /// Returns `asked`; an empty object if the row has none.

@@ -1,7 +1,6 @@
 // The table that the user reads at the end of an experiment.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -10,7 +10,7 @@ constexpr double kTimeoutS = 120;  // unpacking an image of hundreds of MiB take
 // The part of `podm info --json` that is read.
 struct InfoRecord {
   ImageSize size;
-  static constexpr auto fields() { return std::tuple{field("size", &InfoRecord::size)}; }
+  static constexpr auto fields() { return PODM_FIELDS(InfoRecord, size); }
 };
 
 std::optional<ImageSize> size_in(const std::string& info) {

@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <sched.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -20,19 +20,10 @@ namespace {
 constexpr const char* kProgram = "likwid-perfctr";
 constexpr const char* kOutput = "/likwid.csv";
 
-// Returns the processors that this process may run on: "0,1,4".
-std::string usable_processor_list() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  sched_getaffinity(0, sizeof(allowed), &allowed);
-  std::string list;
-  for (int processor = 0; processor < CPU_SETSIZE; ++processor)
-    if (CPU_ISSET(processor, &allowed)) list += fmt::format("{}{}", list.empty() ? "" : ",", processor);
-  return list;
-}
-
+// The processors that this process may run on are counted.
 std::vector<std::string> command_of(const std::string& events, const std::string& output) {
-  return {kProgram, "-f", "-c", usable_processor_list(), "-g", events, "-o", output};
+  return {kProgram, "-f",   "-c", fmt::format("{}", fmt::join(usable_processor_ids(), ",")),
+          "-g",     events, "-o", output};
 }
 
 // Returns likwid's short name of this processor, which is the name of a folder of groups; empty when likwid

@@ -49,13 +49,7 @@ struct RadiusRecord {
   std::optional<std::string> program;
   JsonPointer calibration, warnings;
   static constexpr auto fields() {
-    using R = RadiusRecord;
-    return std::tuple{field("stop_reason", &R::stop_reason),
-                      field("cells", &R::cells),
-                      field("used", &R::used),
-                      field_if_any("program", &R::program),
-                      field_if_any("calibration", &R::calibration),
-                      field_if_any("warnings", &R::warnings)};
+    return PODM_FIELDS(RadiusRecord, stop_reason, cells, used, (program), (calibration), (warnings));
   }
 };
 

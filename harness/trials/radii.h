@@ -14,10 +14,7 @@ namespace podm::bench {
 
 struct ImageIdentity {
   std::string name, path, sha256;
-  static constexpr auto fields() {
-    using I = ImageIdentity;
-    return std::tuple{field("name", &I::name), field("path", &I::path), field("sha256", &I::sha256)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ImageIdentity, name, path, sha256); }
 };
 
 /// A line of radii.jsonl: a radius and its evidence, results/README.md.
@@ -30,12 +27,9 @@ struct RadiusLine : ResolvedRadius {
   ProgramRecord mesher;  ///< without the build
   std::string date;      ///< UTC, in the format of ISO 8601
   static constexpr auto fields() {
-    using R = RadiusLine;
     return std::tuple_cat(
-        std::tuple{field("schema", &R::schema), field("input", &R::input)}, ResolvedRadius::fields(),
-        std::tuple{field("delta_asked_mm", &R::delta_asked_mm), field("calibration", &R::calibration),
-                   field("warnings", &R::warnings), field("command", &R::command),
-                   field("mesher", &R::mesher), field("date", &R::date)});
+        PODM_FIELDS(RadiusLine, schema, input), ResolvedRadius::fields(),
+        PODM_FIELDS(RadiusLine, delta_asked_mm, calibration, warnings, command, mesher, date));
   }
 };
 

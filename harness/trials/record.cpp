@@ -59,30 +59,20 @@ std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result, int
 
 Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, const TrialResult& result) {
   Row row;
+  static_cast<TrialOutcome&>(row) = result;
   row.key = context.key;
   row.experiment = context.experiment;
   row.trial = trial.name;
   row.repeat = turn.repeat;
   row.warmup = turn.is_warmup;
   row.order_seed = context.order_seed;
-  row.status = result.status;
-  row.reason = result.reason;
   row.asked = std::make_shared<const Json>(trial.options);
   row.basis = basis_of(trial.options, result.counters);
-  row.command = result.command;
   row.resolved = result.preparation.resolved;
   row.input = input_of(trial, result);
-  row.mesh = result.mesh;
-  row.measured = result.measured;
-  row.replay = result.replay;
-  row.side_by_side = result.side_by_side;
-  row.solve = result.solve;
   if (result.mesh_bytes > 0) row.mesh_bytes = result.mesh_bytes;
   row.process = process_of(trial, result);
-  row.preparation_s = result.preparation_s;
-  row.verification_s = result.verification_s;
   row.harness_s = context.harness_s;
-  row.stderr_tail = result.stderr_tail;
   row.programs = context.programs;
   row.programs.peer = result.peer;
   if (num_ranks(trial) == 0) row.programs.podm_mpi.reset();

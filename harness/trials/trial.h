@@ -16,24 +16,14 @@
 
 namespace podm::bench {
 
-struct TrialResult {
-  Status status = Status::kFailed;
-  std::string reason;                ///< the reason of a status that is not kOk
-  Preparation preparation;           ///< the image that was read, and the radius
-  std::vector<std::string> command;  ///< the arguments of the process
-  std::optional<PeerRecord> peer;    ///< the mesher, if it is not podm
+struct TrialResult : TrialOutcome {
+  Preparation preparation;         ///< the image that was read, and the radius
+  std::optional<PeerRecord> peer;  ///< the mesher, if it is not podm
   ProcessOutcome process;
-  Counters counters;                                    ///< counts of the process
-  std::optional<Measured> busy_elsewhere;               ///< processors that other work kept busy meanwhile
-  std::uint64_t mesh_bytes = 0;                         ///< size of the mesh file
-  double preparation_s = 0, verification_s = 0;         ///< before the mesher starts and after it has ended
-  std::string stderr_tail;                              ///< end of stderr of a trial that is not kOk
-  std::optional<MeshRecord> mesh;                       ///< the mesher's record; unset without a mesh
-  std::optional<MemoryLevelsRecord> measured;           ///< measurement of a trial that makes no mesh
-  std::optional<ImageSize> image_size;                  ///< unset if the mesher reports no size
-  std::optional<Replay> replay;                         ///< unset if it was not requested
-  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if the trial has no copies
-  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
+  Counters counters;                       ///< counts of the process
+  std::optional<Measured> busy_elsewhere;  ///< processors that other work kept busy meanwhile
+  std::uint64_t mesh_bytes = 0;            ///< size of the mesh file
+  std::optional<ImageSize> image_size;     ///< unset if the mesher reports no size
 };
 
 /// Runs trials one after the other.

@@ -20,46 +20,32 @@ struct HistogramReport {
   std::string name;
   std::optional<double> minimum, maximum;  // unset if not finite
   std::vector<std::uint64_t> counts;
-  static constexpr auto fields() {
-    using H = HistogramReport;
-    return std::tuple{field("name", &H::name), field("minimum", &H::minimum), field("maximum", &H::maximum),
-                      field("counts", &H::counts)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(HistogramReport, name, minimum, maximum, counts); }
 };
 struct ImageTopologyReport {  // integers of either sign
   double components_6 = 0, components_26 = 0, euler_6 = 0, euler_26 = 0;
   static constexpr auto fields() {
-    using T = ImageTopologyReport;
-    return std::tuple{field("components_6", &T::components_6), field("components_26", &T::components_26),
-                      field("euler_6", &T::euler_6), field("euler_26", &T::euler_26)};
+    return PODM_FIELDS(ImageTopologyReport, components_6, components_26, euler_6, euler_26);
   }
 };
 struct LabelReport {
   std::optional<double> components, euler;
   std::optional<ImageTopologyReport> image;
-  static constexpr auto fields() {
-    using L = LabelReport;
-    return std::tuple{field_if_any("components", &L::components), field_if_any("euler", &L::euler),
-                      field_if_any("image", &L::image)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(LabelReport, (components), (euler), (image)); }
 };
 struct DetailsReport {
   std::optional<std::vector<LabelReport>> labels;
-  static constexpr auto fields() { return std::tuple{field_if_any("labels", &DetailsReport::labels)}; }
+  static constexpr auto fields() { return PODM_FIELDS(DetailsReport, (labels)); }
 };
 struct ClaimReport {
   Proof verdict = Proof::kNotRun;
   std::optional<std::vector<HistogramReport>> histograms;
   std::optional<DetailsReport> details;
-  static constexpr auto fields() {
-    return std::tuple{field("verdict", &ClaimReport::verdict),
-                      field_if_any("histograms", &ClaimReport::histograms),
-                      field_if_any("details", &ClaimReport::details)};
-  }
+  static constexpr auto fields() { return PODM_FIELDS(ClaimReport, verdict, (histograms), (details)); }
 };
 struct VerifierReport {
   ByName<ClaimReport> claims;
-  static constexpr auto fields() { return std::tuple{field("claims", &VerifierReport::claims)}; }
+  static constexpr auto fields() { return PODM_FIELDS(VerifierReport, claims); }
 };
 
 // Returns nothing if there is no complete report.

@@ -13,7 +13,6 @@
 // Sources that bring their own locks include this file. All other sources include podm.h.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <mutex>

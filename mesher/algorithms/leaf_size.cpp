@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "algorithms/memory_model.h"
 #include "octree/leaf_region.h"

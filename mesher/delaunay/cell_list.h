@@ -1,7 +1,6 @@
 // Cells in the order in which a walk over neighbours found them, each once.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "delaunay/mesh.h"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "delaunay/id_arena.h"
 #include "delaunay/lock_contract.h"
@@ -262,11 +261,5 @@ class Mesh {
   static constexpr std::uint16_t kStampBits = 0x3fff, kReliance = 0x4000, kMark = 0x8000;
   IdArena cell_ids_, vertex_ids_;
 };
-
-/// True if adjacency and orientation hold: the part of is_valid() that holds for an optimised mesh.
-bool is_triangulation(const Mesh& mesh, std::string* fault = nullptr);
-/// True if adjacency, orientation, circumspheres and the local Delaunay property all hold; `fault` describes
-/// the first violation. Linear in the number of cells.
-bool is_valid(const Mesh& mesh, std::string* fault = nullptr);
 
 }  // namespace podm

@@ -8,7 +8,6 @@
 //   needs, are known before the last step.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "delaunay/mesh.h"

@@ -1,7 +1,6 @@
 #include "distributed/report_of_ranks.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "algorithms/report_on_workers.h"
 #include "distributed/messages.h"

@@ -278,28 +278,7 @@ void index(const VoxelArray& array, const std::string& path, std::size_t threads
 }  // namespace
 
 void index_voxels(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image) {
-  switch (array.type) {
-    case VoxelType::kUint8:
-      return index<std::uint8_t>(array, path, threads, image);
-    case VoxelType::kInt8:
-      return index<std::int8_t>(array, path, threads, image);
-    case VoxelType::kUint16:
-      return index<std::uint16_t>(array, path, threads, image);
-    case VoxelType::kInt16:
-      return index<std::int16_t>(array, path, threads, image);
-    case VoxelType::kUint32:
-      return index<std::uint32_t>(array, path, threads, image);
-    case VoxelType::kInt32:
-      return index<std::int32_t>(array, path, threads, image);
-    case VoxelType::kUint64:
-      return index<std::uint64_t>(array, path, threads, image);
-    case VoxelType::kInt64:
-      return index<std::int64_t>(array, path, threads, image);
-    case VoxelType::kFloat:
-      return index<float>(array, path, threads, image);
-    case VoxelType::kDouble:
-      return index<double>(array, path, threads, image);
-  }
+  with_voxel_type(array.type, [&](auto voxel) { index<decltype(voxel)>(array, path, threads, image); });
 }
 
 }  // namespace podm

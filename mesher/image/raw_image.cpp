@@ -65,23 +65,7 @@ Matrix nearest_orthonormal(Matrix m) {
 }  // namespace
 
 std::size_t bytes_of(VoxelType type) {
-  switch (type) {
-    case VoxelType::kUint8:
-    case VoxelType::kInt8:
-      return 1;
-    case VoxelType::kUint16:
-    case VoxelType::kInt16:
-      return 2;
-    case VoxelType::kUint32:
-    case VoxelType::kInt32:
-    case VoxelType::kFloat:
-      return 4;
-    case VoxelType::kUint64:
-    case VoxelType::kInt64:
-    case VoxelType::kDouble:
-      return 8;
-  }
-  throw InternalError("unknown voxel type");
+  return with_voxel_type(type, [](auto voxel) { return sizeof voxel; });
 }
 
 VoxelArray array_of(const RawImage& raw) {

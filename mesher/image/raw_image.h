@@ -5,11 +5,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "podm/image_io.h"
 
 namespace podm {
+
+/// Calls use(Voxel()) for the C++ type of voxels.
+template <class Use>
+auto with_voxel_type(VoxelType type, const Use& use) {
+  using AnyVoxel = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
+                                std::int32_t, std::uint64_t, std::int64_t, float, double>;
+  constexpr AnyVoxel kVoxels[] = {std::uint8_t(),  std::int8_t(),  std::uint16_t(), std::int16_t(),
+                                  std::uint32_t(), std::int32_t(), std::uint64_t(), std::int64_t(),
+                                  float(),         double()};
+  return std::visit(use, kVoxels[static_cast<std::size_t>(type)]);
+}
 
 std::size_t bytes_of(VoxelType type);
 

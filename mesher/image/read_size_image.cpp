@@ -31,29 +31,7 @@ std::vector<float> radii_from(const RawImage& raw) {
 }
 
 std::vector<float> radii_from(const RawImage& raw) {
-  switch (raw.type) {
-    case VoxelType::kUint8:
-      return radii_from<std::uint8_t>(raw);
-    case VoxelType::kInt8:
-      return radii_from<std::int8_t>(raw);
-    case VoxelType::kUint16:
-      return radii_from<std::uint16_t>(raw);
-    case VoxelType::kInt16:
-      return radii_from<std::int16_t>(raw);
-    case VoxelType::kUint32:
-      return radii_from<std::uint32_t>(raw);
-    case VoxelType::kInt32:
-      return radii_from<std::int32_t>(raw);
-    case VoxelType::kUint64:
-      return radii_from<std::uint64_t>(raw);
-    case VoxelType::kInt64:
-      return radii_from<std::int64_t>(raw);
-    case VoxelType::kFloat:
-      return radii_from<float>(raw);
-    case VoxelType::kDouble:
-      break;
-  }
-  return radii_from<double>(raw);
+  return with_voxel_type(raw.type, [&](auto voxel) { return radii_from<decltype(voxel)>(raw); });
 }
 
 }  // namespace

@@ -63,24 +63,10 @@ class Hdf5File {
   Hdf5Handle file_;
 };
 
-template <class Value>
-hid_t hdf5_type();
-template <>
-inline hid_t hdf5_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-inline hid_t hdf5_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-inline hid_t hdf5_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-inline hid_t hdf5_type<std::uint32_t>() {
-  return H5T_NATIVE_UINT32;
-}
+inline hid_t hdf5_type(double) { return H5T_NATIVE_DOUBLE; }
+inline hid_t hdf5_type(std::int64_t) { return H5T_NATIVE_INT64; }
+inline hid_t hdf5_type(std::int32_t) { return H5T_NATIVE_INT32; }
+inline hid_t hdf5_type(std::uint32_t) { return H5T_NATIVE_UINT32; }
 
 template <class Value, class ValueAt>
 void Hdf5File::write_rows(const std::string& name, std::uint64_t first_row, std::uint64_t num_rows,
@@ -94,7 +80,7 @@ void Hdf5File::write_rows(const std::string& name, std::uint64_t first_row, std:
     for (std::uint64_t row = begin; row < end; ++row)
       for (std::uint64_t column = 0; column < to.num_columns; ++column)
         block.push_back(static_cast<Value>(value_at(row, column)));
-    write_block(to, first_row + begin, end - begin, hdf5_type<Value>(), block.data());
+    write_block(to, first_row + begin, end - begin, hdf5_type(Value()), block.data());
   }
 }
 

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "files/atomic_file.h"
 #include "podm/errors.h"

@@ -1,9 +1,7 @@
 // Chooses the writer by the extension.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <span>
 
 #include "files/atomic_file.h"
 #include "io/mesh_formats.h"

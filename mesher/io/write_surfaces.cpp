@@ -2,7 +2,6 @@
 // outwards.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <filesystem>

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 
 #include "io/hdf5_file.h"
 #include "io/mesh_formats.h"

@@ -1,7 +1,6 @@
 #include "isosurface/isosurface.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "image/working_frame.h"
 

@@ -2,7 +2,6 @@
 // beside it.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "optimize/cavity.h"

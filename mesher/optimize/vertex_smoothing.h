@@ -4,7 +4,6 @@
 // (Freitag, Jones, Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "optimize/cavity.h"

@@ -2,7 +2,6 @@
 // navel.
 #include "phantoms/phantom_abdomen.h"
 
-#include <initializer_list>
 #include <numbers>
 
 namespace podm {

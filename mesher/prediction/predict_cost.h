@@ -2,8 +2,6 @@
 // presently takes for a mesh of a phantom.
 #pragma once
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "isosurface/isosurface.h"

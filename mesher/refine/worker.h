@@ -2,8 +2,6 @@
 // at a time and never blocks, spins or sleeps. The loop in algorithms/podm_loop.h decides when it runs.
 #pragma once
 
-#include <array>
-#include <chrono>
 #include <cstdint>
 
 #include "delaunay/operation.h"

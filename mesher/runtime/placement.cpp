@@ -132,6 +132,8 @@ void bind_this_thread(const std::vector<int>& os_indices) {
                                      std::strerror(errno)));
 }
 
+}  // namespace
+
 std::vector<int> processors_of_this_thread() {
   ProcessorSet set{};
   if (sched_getaffinity(0, sizeof set, set.data()) != 0)
@@ -141,8 +143,6 @@ std::vector<int> processors_of_this_thread() {
     if (CPU_ISSET_S(os_index, sizeof set, set.data())) os_indices.push_back(os_index);
   return os_indices;
 }
-
-}  // namespace
 
 void pin_this_thread(int os_index) { bind_this_thread({os_index}); }
 

@@ -40,6 +40,8 @@ struct Place {
 std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, int num_workers,
                                  bool oversubscribe);
 
+/// Returns the processors that this thread may run on, in ascending order, by the numbers of the system.
+std::vector<int> processors_of_this_thread();
 /// Binds the calling thread to one processor. Throws PlacementError if the system refuses.
 void pin_this_thread(int os_index);
 

@@ -1,7 +1,6 @@
 // The facets between different labels of a mesh, as triangles of the world, and sample points on them.
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "claims/check_fidelity_tree.h"

@@ -3,8 +3,6 @@
 // facets between labels.
 #pragma once
 
-#include <array>
-
 #include "image/image.h"
 
 namespace podm::verify {

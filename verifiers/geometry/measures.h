@@ -1,7 +1,6 @@
 // Squared measures of cells and triangles as fractions, over any field.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "geometry/exact.h"

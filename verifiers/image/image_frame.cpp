@@ -1,5 +1,6 @@
 #include "image/image_frame.h"
 
+#include <array>
 #include <cmath>
 
 namespace podm::verify {
@@ -106,17 +107,8 @@ Point ImageFrame::voxel_movement(const Point& world_movement) const {
 }
 
 std::string describe(Space space) {
-  switch (space) {
-    case Space::kUnstated:
-      break;
-    case Space::kRas:
-      return "RAS";
-    case Space::kLps:
-      return "LPS";
-    case Space::kVoxel:
-      return "voxel";
-  }
-  return "RAS (assumed, the file does not say)";
+  constexpr std::array kWords{"RAS (assumed, the file does not say)", "RAS", "LPS", "voxel"};
+  return kWords[static_cast<std::size_t>(space)];
 }
 
 }  // namespace podm::verify

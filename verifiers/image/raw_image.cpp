@@ -30,26 +30,6 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<std::i
 
 }  // namespace
 
-std::size_t bytes_of(VoxelType type) {
-  switch (type) {
-    case VoxelType::kUint8:
-    case VoxelType::kInt8:
-      return 1;
-    case VoxelType::kUint16:
-    case VoxelType::kInt16:
-      return 2;
-    case VoxelType::kUint32:
-    case VoxelType::kInt32:
-    case VoxelType::kFloat:
-      return 4;
-    case VoxelType::kUint64:
-    case VoxelType::kInt64:
-    case VoxelType::kDouble:
-      break;
-  }
-  return 8;
-}
-
 void refuse(const std::string& path, const std::string& fault) { throw InputError(path + ": " + fault); }
 
 void read_voxels(const std::string& path, RawImage& raw, ByteSource& source) {

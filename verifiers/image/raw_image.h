@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace podm::verify {
@@ -15,7 +16,19 @@ class ByteSource;
 
 enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
 
-std::size_t bytes_of(VoxelType type);
+/// Calls use(Voxel()) for the C++ type of voxels.
+template <class Use>
+auto with_voxel_type(VoxelType type, const Use& use) {
+  using AnyVoxel = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
+                                std::int32_t, std::uint64_t, std::int64_t, float, double>;
+  constexpr AnyVoxel kVoxels[] = {std::uint8_t(),  std::int8_t(),  std::uint16_t(), std::int16_t(),
+                                  std::uint32_t(), std::int32_t(), std::uint64_t(), std::int64_t(),
+                                  float(),         double()};
+  return std::visit(use, kVoxels[static_cast<std::size_t>(type)]);
+}
+inline std::size_t bytes_of(VoxelType type) {
+  return with_voxel_type(type, [](auto voxel) { return sizeof voxel; });
+}
 
 struct RawImage {
   std::vector<std::int64_t> size;  ///< voxels per axis, for all axes of the file
@@ -42,7 +55,7 @@ std::array<double, 3> orthogonalize_affine(const std::string& path, std::array<d
 /// Calls use(number, value) for every voxel, with the value in the type of the file.
 template <class Use>
 void for_each_voxel(RawImage& raw, const Use& use) {
-  const auto each = [&]<class Voxel>(Voxel) {
+  with_voxel_type(raw.type, [&]<class Voxel>(Voxel) {
     for (std::size_t i = 0; i < raw.bytes.size() / sizeof(Voxel); ++i) {
       unsigned char* const bytes = raw.bytes.data() + i * sizeof(Voxel);
       if (raw.is_swapped) std::reverse(bytes, bytes + sizeof(Voxel));
@@ -50,29 +63,7 @@ void for_each_voxel(RawImage& raw, const Use& use) {
       std::memcpy(&voxel, bytes, sizeof voxel);
       use(i, voxel);
     }
-  };
-  switch (raw.type) {
-    case VoxelType::kUint8:
-      return each(std::uint8_t());
-    case VoxelType::kInt8:
-      return each(std::int8_t());
-    case VoxelType::kUint16:
-      return each(std::uint16_t());
-    case VoxelType::kInt16:
-      return each(std::int16_t());
-    case VoxelType::kUint32:
-      return each(std::uint32_t());
-    case VoxelType::kInt32:
-      return each(std::int32_t());
-    case VoxelType::kUint64:
-      return each(std::uint64_t());
-    case VoxelType::kInt64:
-      return each(std::int64_t());
-    case VoxelType::kFloat:
-      return each(float());
-    case VoxelType::kDouble:
-      return each(double());
-  }
+  });
 }
 
 RawImage read_raw(const std::string& path);    ///< chooses the reader by the file's name

@@ -1,6 +1,5 @@
 // INRIMAGE-4: a text header padded to a multiple of 256 bytes, then the voxels.
 #include <charconv>
-#include <cmath>
 #include <map>
 #include <sstream>
 

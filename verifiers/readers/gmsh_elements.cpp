@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "readers/mesh_parts.h"
 
@@ -20,22 +19,11 @@ constexpr std::array<std::uint8_t, 39> kNodes{0,  2,  3, 4,  4,  8,  6,  5,  3, 
                                               4,  5,  6, 20, 35, 56, 22, 28, 0,  0,  16, 25, 36};
 
 std::string name_of_type(std::int64_t type) {
-  switch (type) {
-    case 1:
-      return "lines";
-    case 3:
-      return "quadrilaterals";
-    case 5:
-      return "hexahedra";
-    case 6:
-      return "wedges";
-    case 7:
-      return "pyramids";
-    case 15:
-      return "vertices";
-    default:
-      return fmt::format("elements of Gmsh type {}", type);
-  }
+  constexpr std::pair<int, const char*> kNames[] = {{1, "lines"},  {3, "quadrilaterals"}, {5, "hexahedra"},
+                                                    {6, "wedges"}, {7, "pyramids"},       {15, "vertices"}};
+  for (const auto& [known, name] : kNames)
+    if (type == known) return name;
+  return fmt::format("elements of Gmsh type {}", type);
 }
 
 }  // namespace

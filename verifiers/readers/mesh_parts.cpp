@@ -37,22 +37,6 @@ std::optional<std::array<double, N>> numbers_of(std::string_view text) {
   return at == end ? std::optional(numbers) : std::nullopt;
 }
 
-}  // namespace
-
-void check_counts(const MeshFile& file, const std::string& place, std::uint64_t num_vertices,
-                  std::uint64_t num_cells) {
-  if (num_vertices > kMostVertices) file.refuse(place, fmt::format("more than {} vertices", kMostVertices));
-  if (num_cells > kMostCells) file.refuse(place, fmt::format("more than {} cells", kMostCells));
-}
-
-std::optional<std::size_t> label_array_rank(std::string_view name) {
-  std::string lower(name);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const auto* found = std::find(kLabelArrays.begin(), kLabelArrays.end(), lower);
-  if (found == kLabelArrays.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - kLabelArrays.begin());
-}
-
 std::optional<Space> space_of(std::string_view word) {
   if (word == "RAS") return Space::kRas;
   if (word == "LPS") return Space::kLps;
@@ -81,6 +65,61 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
   file.refuse(place, fmt::format("the promise '{}' is unknown", words));
 }
 
+}  // namespace
+
+void check_counts(const MeshFile& file, const std::string& place, std::uint64_t num_vertices,
+                  std::uint64_t num_cells) {
+  if (num_vertices > kMostVertices) file.refuse(place, fmt::format("more than {} vertices", kMostVertices));
+  if (num_cells > kMostCells) file.refuse(place, fmt::format("more than {} cells", kMostCells));
+}
+
+std::optional<std::size_t> label_array_rank(std::string_view name) {
+  std::string lower(name);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto* found = std::find(kLabelArrays.begin(), kLabelArrays.end(), lower);
+  if (found == kLabelArrays.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kLabelArrays.begin());
+}
+
+bool read_note(const MeshFile& file, const std::string& place, std::string_view note, Mesh& mesh,
+               char blank) {
+  if (const auto word = after_prefix(note, std::string("space") + blank)) {
+    mesh.space = space_of(*word).value_or(mesh.space);
+  } else if (const auto promise = after_prefix(note, std::string("promise") + blank)) {
+    read_promise(file, place, *promise, mesh);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, LabelPairs& pairs) {
+  const auto note = after_prefix(text, " ");
+  if (!note || read_note(file, "a comment", *note, mesh)) return;
+  if (auto label = after_prefix(*note, "label ")) {
+    if (const auto value = take_integer(*label)) mesh.label_names[*value] = *label;
+  } else if (auto facets = after_prefix(*note, "pair ")) {
+    const auto number = take_integer(*facets);
+    if (const auto labels = take_pair(*facets); number && labels) pairs[*number] = *labels;
+  }
+}
+
+void label_facets(const MeshFile& file, const std::string& place, const char* what,
+                  const std::vector<std::int64_t>& numbers, const LabelPairs& pairs, Mesh& mesh) {
+  for (const std::int64_t number : numbers) {
+    const auto pair = pairs.find(number);
+    if (pair == pairs.end()) file.refuse(place, fmt::format("{} {} has no line 'pair'", what, number));
+    mesh.facet_labels.push_back(pair->second);
+  }
+}
+
+std::string upper(std::string_view word) {
+  std::string text(word);
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return text;
+}
+
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return std::nullopt;
   return text.substr(prefix.size());
@@ -93,6 +132,16 @@ std::optional<std::int64_t> take_integer(std::string_view& text) {
   if (error != std::errc() || (length < text.size() && text[length] != ' ')) return std::nullopt;
   text.remove_prefix(std::min(length + 1, text.size()));
   return value;
+}
+
+std::optional<std::int64_t> integer_after(std::string_view text, std::string_view prefix) {
+  auto rest = after_prefix(text, prefix);
+  return rest ? take_integer(*rest) : std::nullopt;
+}
+
+std::optional<std::array<LabelValue, 2>> take_pair(std::string_view& text) {
+  const auto a = take_integer(text), b = a ? take_integer(text) : std::nullopt;
+  return b ? std::optional(std::array<LabelValue, 2>{*a, *b}) : std::nullopt;
 }
 
 }  // namespace podm::verify

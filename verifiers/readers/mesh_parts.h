@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,12 +38,23 @@ void make_room(std::vector<Item>& items, std::size_t count) {
 /// any other name. Case is ignored.
 std::optional<std::size_t> label_array_rank(std::string_view name);
 
-/// Returns the space for podm's word for it; none for any other word.
-std::optional<Space> space_of(std::string_view word);
+/// Reads a note of podm about the mesh, in which `blank` follows the first word: its space ("space RAS") or a
+/// promise ("promise unclaimed delaunay", "promise dihedral 8 165", "promise smoothed 1.5"). Returns false
+/// for any other note. Throws InputError at `place` for an unknown promise.
+bool read_note(const MeshFile& file, const std::string& place, std::string_view note, Mesh& mesh,
+               char blank = ' ');
 
-/// Reads a promise that podm writes about the mesh: "unclaimed delaunay", "dihedral 8 165", "smoothed 1.5".
-/// Throws InputError at `place` for any other words.
-void read_promise(const MeshFile& file, const std::string& place, std::string_view words, Mesh& mesh);
+/// The labels on both sides of facets, by a number that the file gives to the facets.
+using LabelPairs = std::map<std::int64_t, std::array<LabelValue, 2>>;
+/// Reads a comment of podm: a blank and a note, "label 1 liver", or "pair 7 0 1" of the facets of number 7.
+void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, LabelPairs& pairs);
+/// Appends the labels of facets by their numbers. Throws InputError at `place` if a number, called `what`,
+/// has no pair.
+void label_facets(const MeshFile& file, const std::string& place, const char* what,
+                  const std::vector<std::int64_t>& numbers, const LabelPairs& pairs, Mesh& mesh);
+
+/// Returns the word with its ASCII letters in capitals.
+std::string upper(std::string_view word);
 
 /// Returns the rest of `text` after `prefix`; none if `text` does not begin with it.
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix);
@@ -49,5 +62,9 @@ std::optional<std::string_view> after_prefix(std::string_view text, std::string_
 /// Removes the leading integer and the blank after it, if any, from `text` and returns the integer. Returns
 /// none, and leaves `text` as it is, if no integer is there.
 std::optional<std::int64_t> take_integer(std::string_view& text);
+/// Returns the integer after `prefix`; none if `text` does not begin with both.
+std::optional<std::int64_t> integer_after(std::string_view text, std::string_view prefix);
+/// Removes two leading integers, likewise.
+std::optional<std::array<LabelValue, 2>> take_pair(std::string_view& text);
 
 }  // namespace podm::verify

@@ -24,14 +24,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// Abaqus ignores case.
-std::string upper(std::string_view word) {
-  std::string text(word);
-  for (char& c : text)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return text;
-}
-
 // Removes the part of a line before its next comma, and the comma, and returns the part.
 std::string_view take_field(std::string_view& line) {
   const std::size_t comma = line.find(',');
@@ -109,21 +101,19 @@ class AbaqusReader {
 
   // " space RAS", " label 7 elset liver the liver", " pair 0 7 surface liver-outside the liver|outside"
   void read_comment(std::string_view text) {
-    if (const auto word = after_prefix(text, " space ")) {
-      if (const auto space = space_of(*word)) mesh_.space = *space;
-    } else if (const auto promise = after_prefix(text, " promise ")) {
-      read_promise(file_, "a comment", *promise, mesh_);
-    } else if (auto label = after_prefix(text, " label ")) {
+    const auto note = after_prefix(text, " ");
+    if (!note || read_note(file_, "a comment", *note, mesh_)) return;
+    if (auto label = after_prefix(*note, "label ")) {
       const auto value = take_integer(*label);
       const auto set = value ? after_prefix(*label, "elset ") : std::nullopt;
       const std::size_t blank = set ? set->find(' ') : std::string_view::npos;
       if (blank == std::string_view::npos) return;
       label_of_set_[upper(set->substr(0, blank))] = *value;
       mesh_.label_names[*value] = set->substr(blank + 1);
-    } else if (auto pair = after_prefix(text, " pair ")) {
-      const auto a = take_integer(*pair), b = a ? take_integer(*pair) : std::nullopt;
-      const auto surface = b ? after_prefix(*pair, "surface ") : std::nullopt;
-      if (surface) pair_of_surface_[upper(surface->substr(0, surface->find(' ')))] = {*a, *b};
+    } else if (auto pair = after_prefix(*note, "pair ")) {
+      const auto labels = take_pair(*pair);
+      const auto surface = after_prefix(*pair, "surface ");
+      if (labels && surface) pair_of_surface_[upper(surface->substr(0, surface->find(' ')))] = *labels;
     }
   }
 

@@ -38,20 +38,13 @@ class ExodusReader {
   // "space RAS", "label 7 block 7", "pair 0 7 side set 1"
   void read_information() {
     for (const std::string& line : document_.texts("info_records")) {
-      if (const auto word = after_prefix(line, "space ")) {
-        if (const auto space = space_of(*word)) mesh_.space = *space;
-      } else if (const auto promise = after_prefix(line, "promise ")) {
-        read_promise(file_, "info_records", *promise, mesh_);
-      } else if (auto label = after_prefix(line, "label ")) {
-        const auto value = take_integer(*label);
-        auto rest = value ? after_prefix(*label, "block ") : std::nullopt;
-        const auto block = rest ? take_integer(*rest) : std::nullopt;
-        if (block) label_of_block_[*block] = *value;
+      if (read_note(file_, "info_records", line, mesh_)) continue;
+      if (auto label = after_prefix(line, "label ")) {
+        const auto value = take_integer(*label), block = integer_after(*label, "block ");
+        if (value && block) label_of_block_[*block] = *value;
       } else if (auto pair = after_prefix(line, "pair ")) {
-        const auto a = take_integer(*pair), b = a ? take_integer(*pair) : std::nullopt;
-        auto rest = b ? after_prefix(*pair, "side set ") : std::nullopt;
-        const auto set = rest ? take_integer(*rest) : std::nullopt;
-        if (set) pair_of_set_[*set] = {*a, *b};
+        const auto labels = take_pair(*pair);
+        if (const auto set = integer_after(*pair, "side set "); labels && set) pair_of_set_[*set] = *labels;
       }
     }
   }
@@ -125,12 +118,6 @@ class ExodusReader {
     if (is_solid && !name.empty()) mesh_.label_names[label] = name;
   }
 
-  static std::string upper(std::string text) {
-    for (char& c : text)
-      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return text;
-  }
-
   static VertexId vertex(const NumberArray& nodes, std::size_t i) {
     const auto number = nodes.integer(i);
     return number && *number > 0 ? vertex_id(*number - 1) : kNone;
@@ -194,7 +181,7 @@ class ExodusReader {
   Mesh mesh_;
   std::vector<Block> blocks_;
   std::map<std::int64_t, LabelValue> label_of_block_;  // from podm's information records
-  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_set_;
+  LabelPairs pair_of_set_;
 };
 
 }  // namespace

@@ -110,20 +110,14 @@ class GmshReader {
       if (cursor_.is_at_end()) cursor_.refuse("$Comments is not closed");
       const std::string_view line = cursor_.rest_of_line();
       if (line.starts_with("$EndComments")) return;
-      if (const auto word = after_prefix(line, "space ")) {
-        if (const auto space = space_of(*word)) mesh_.space = *space;
-      } else if (const auto promise = after_prefix(line, "promise ")) {
-        read_promise(file_, "$Comments", *promise, mesh_);
-      } else if (auto label = after_prefix(line, "label ")) {
-        const auto value = take_integer(*label);
-        auto rest = value ? after_prefix(*label, "physical volume ") : std::nullopt;
-        if (!rest) continue;
-        if (const auto group = take_integer(*rest)) label_of_group_[*group] = *value;
+      if (read_note(file_, "$Comments", line, mesh_)) continue;
+      if (auto label = after_prefix(line, "label ")) {
+        const auto value = take_integer(*label), group = integer_after(*label, "physical volume ");
+        if (value && group) label_of_group_[*group] = *value;
       } else if (auto pair = after_prefix(line, "pair ")) {
-        const auto a = take_integer(*pair), b = a ? take_integer(*pair) : std::nullopt;
-        auto rest = b ? after_prefix(*pair, "physical surface ") : std::nullopt;
-        const auto group = rest ? take_integer(*rest) : std::nullopt;
-        if (group) pair_of_surface_[*group] = {*a, *b};
+        const auto labels = take_pair(*pair);
+        const auto group = integer_after(*pair, "physical surface ");
+        if (labels && group) pair_of_surface_[*group] = *labels;
       }
     }
   }
@@ -323,7 +317,9 @@ class GmshReader {
   // In podm's files the normal of a facet points from the second label to the first. The outside of all
   // volumes has the background's label 0, or -1 if a volume has label 0.
   void label_facets() {
-    if (!pair_of_surface_.empty()) return label_facets_by_pairs();
+    if (!pair_of_surface_.empty())
+      return verify::label_facets(file_, "$Elements", "surface", elements_.facet_entities(), pair_of_surface_,
+                                  mesh_);
     if (label_of_group_.empty()) return;
     LabelValue outside = 0;
     for (const auto& [group, label] : label_of_group_)
@@ -341,15 +337,6 @@ class GmshReader {
     }
   }
 
-  void label_facets_by_pairs() {
-    for (const std::int64_t surface : elements_.facet_entities()) {
-      const auto pair = pair_of_surface_.find(surface);
-      if (pair == pair_of_surface_.end())
-        file_.refuse("$Elements", fmt::format("surface {} has no line 'pair' in $Comments", surface));
-      mesh_.facet_labels.push_back(pair->second);
-    }
-  }
-
   const MeshFile& file_;
   Cursor cursor_;
   Mesh mesh_;
@@ -357,11 +344,11 @@ class GmshReader {
   int size_bytes_ = 8;
   ItemNumbers tags_;
   GmshElements elements_;
-  std::array<std::uint64_t, kMostNodes> nodes_{};                      // of the current element
-  std::map<std::int64_t, LabelValue> label_of_group_;                  // of volumes, from podm's comments
-  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_surface_;  // from podm's comments
-  std::map<std::int64_t, std::string> group_names_;                    // of volumes
-  std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;        // by dimension and entity
+  std::array<std::uint64_t, kMostNodes> nodes_{};                // of the current element
+  std::map<std::int64_t, LabelValue> label_of_group_;            // of volumes, from podm's comments
+  LabelPairs pair_of_surface_;                                   // from podm's comments
+  std::map<std::int64_t, std::string> group_names_;              // of volumes
+  std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;  // by dimension and entity
   std::vector<Side> sides_;
 };
 

@@ -18,13 +18,6 @@
 namespace podm::verify {
 namespace {
 
-std::string upper(std::string_view word) {
-  std::string text(word);
-  for (char& c : text)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return text;
-}
-
 // VTK writes ids of type vtkIdType as int.
 std::optional<NumberType> number_type(const std::string& upper_name) {
   static const std::pair<const char*, NumberType> kTypes[] = {
@@ -204,11 +197,8 @@ class LegacyVtkReader {
 
   // Reads the same words as in podm's VTU files.
   void read_word(const std::string& name, const NumberArray& values) {
-    if (const auto word = after_prefix(name, "space:")) {
-      if (const auto space = space_of(*word)) grid_.mesh.space = *space;
-    } else if (const auto promise = after_prefix(name, "promise:")) {
-      read_promise(file_, "FIELD", *promise, grid_.mesh);
-    } else if (const auto label = after_prefix(name, "label:")) {
+    if (read_note(file_, "FIELD", name, grid_.mesh, ':')) return;
+    if (const auto label = after_prefix(name, "label:")) {
       const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;
       if (!value) cursor_.refuse("not one integer, the value of the label");
       grid_.mesh.label_names[*value] = *label;

@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <map>
-#include <optional>
 #include <utility>
 
 #include "readers/cursor.h"
@@ -82,18 +80,7 @@ class MeditBuilder {
  public:
   explicit MeditBuilder(const MeshFile& file) : file_(file) {}
 
-  void read_comment(std::string_view text) {
-    if (const auto word = after_prefix(text, " space ")) {
-      if (const auto space = space_of(*word)) mesh_.space = *space;
-    } else if (const auto promise = after_prefix(text, " promise ")) {
-      read_promise(file_, "a comment", *promise, mesh_);
-    } else if (auto label = after_prefix(text, " label ")) {
-      if (const auto value = take_integer(*label)) mesh_.label_names[*value] = *label;
-    } else if (auto pair = after_prefix(text, " pair ")) {
-      const auto number = take_integer(*pair), a = take_integer(*pair), b = take_integer(*pair);
-      if (number && a && b) label_pairs_[*number] = {*a, *b};
-    }
-  }
+  void read_comment(std::string_view text) { verify::read_comment(file_, text, mesh_, label_pairs_); }
 
   template <class Numbers>
   void read_vertices(Numbers numbers) {
@@ -143,13 +130,8 @@ class MeditBuilder {
     if (!has_vertices_) file_.refuse(kVertices.keyword, "the file has no such section");
     mesh_.format = std::move(format);
     if (!mesh_.cells.empty()) mesh_.cell_label_array = "medit:ref";
-    if (label_pairs_.empty()) return std::move(mesh_);
-    for (const std::int64_t reference : facet_references_) {
-      const auto pair = label_pairs_.find(reference);
-      if (pair == label_pairs_.end())
-        file_.refuse("Triangles", fmt::format("reference {} has no line '# pair'", reference));
-      mesh_.facet_labels.push_back(pair->second);
-    }
+    if (!label_pairs_.empty())
+      label_facets(file_, "Triangles", "reference", facet_references_, label_pairs_, mesh_);
     return std::move(mesh_);
   }
 
@@ -160,7 +142,7 @@ class MeditBuilder {
   Mesh mesh_;
   bool has_vertices_ = false;
   std::vector<std::int64_t> facet_references_;
-  std::map<std::int64_t, std::array<LabelValue, 2>> label_pairs_;
+  LabelPairs label_pairs_;
 };
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <map>
 
 #include "readers/cursor.h"
 #include "readers/formats.h"
@@ -25,21 +24,9 @@ class TetgenReader {
  private:
   Cursor open(const MeshFile& file) {
     Cursor cursor(file);
-    cursor.skip_comments([this, &file](std::string_view text) { read_comment(file, text); });
+    cursor.skip_comments(
+        [this, &file](std::string_view text) { read_comment(file, text, mesh_, pair_of_marker_); });
     return cursor;
-  }
-
-  void read_comment(const MeshFile& file, std::string_view text) {
-    if (const auto word = after_prefix(text, " space ")) {
-      if (const auto space = space_of(*word)) mesh_.space = *space;
-    } else if (const auto promise = after_prefix(text, " promise ")) {
-      read_promise(file, "a comment", *promise, mesh_);
-    } else if (auto label = after_prefix(text, " label ")) {
-      if (const auto value = take_integer(*label)) mesh_.label_names[*value] = *label;
-    } else if (auto pair = after_prefix(text, " pair ")) {
-      const auto number = take_integer(*pair), a = take_integer(*pair), b = take_integer(*pair);
-      if (number && a && b) pair_of_marker_[*number] = {*a, *b};
-    }
   }
 
   // Reads a number of the head line that may be left out.
@@ -122,21 +109,12 @@ class TetgenReader {
       cursor.rest_of_line();
     }
     cursor.is_at_last_word();  // reads the comments at the end
-    if (!pair_of_marker_.empty()) label_facets(file, markers);
-  }
-
-  void label_facets(const MeshFile& file, const std::vector<std::int64_t>& markers) {
-    for (const std::int64_t marker : markers) {
-      const auto pair = pair_of_marker_.find(marker);
-      if (pair == pair_of_marker_.end())
-        file.refuse("a face", fmt::format("marker {} has no line '# pair'", marker));
-      mesh_.facet_labels.push_back(pair->second);
-    }
+    if (!pair_of_marker_.empty()) label_facets(file, "a face", "marker", markers, pair_of_marker_, mesh_);
   }
 
   Mesh mesh_;
   std::int64_t base_ = 1;
-  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_marker_;
+  LabelPairs pair_of_marker_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "readers/formats.h"
 #include "readers/mesh_parts.h"
@@ -53,11 +52,8 @@ VtkPiece load_piece(const MeshFile& file, VtuDocument& document, const VtuPiece&
 // is the label's.
 void read_field_data(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
   for (const VtuArray& array : document.field_data) {
-    if (const auto word = after_prefix(array.name, "space:")) {
-      if (const auto space = space_of(*word)) mesh.space = *space;
-    } else if (const auto promise = after_prefix(array.name, "promise:")) {
-      read_promise(file, array.place(), *promise, mesh);
-    } else if (const auto name = after_prefix(array.name, "label:")) {
+    if (read_note(file, array.place(), array.name, mesh, ':')) continue;
+    if (const auto name = after_prefix(array.name, "label:")) {
       const NumberArray values = load_vtu_array(file, document, array, std::nullopt);
       const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;
       if (!value) file.refuse(array.place(), "not one integer, the value of the label");

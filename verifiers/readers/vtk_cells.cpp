@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
+#include <utility>
 
 #include "readers/mesh_parts.h"
 
@@ -15,38 +15,13 @@ constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTriangle = 22
 
 // VTK's cell types (vtkCellType.h) by their common names.
 std::string name_of_type(std::int64_t type) {
-  switch (type) {
-    case 0:
-      return "empty cells";
-    case 1:
-      return "vertices";
-    case 2:
-      return "vertex groups";
-    case 3:
-      return "lines";
-    case 4:
-      return "polylines";
-    case 6:
-      return "triangle strips";
-    case 7:
-      return "polygons";
-    case 8:
-      return "pixels";
-    case 9:
-      return "quadrilaterals";
-    case 11:
-      return "voxels";
-    case 12:
-      return "hexahedra";
-    case 13:
-      return "wedges";
-    case 14:
-      return "pyramids";
-    case 42:
-      return "polyhedra";
-    default:
-      return fmt::format("cells of VTK type {}", type);
-  }
+  constexpr std::pair<int, const char*> kNames[] = {
+      {0, "empty cells"},     {1, "vertices"}, {2, "vertex groups"}, {3, "lines"},          {4, "polylines"},
+      {6, "triangle strips"}, {7, "polygons"}, {8, "pixels"},        {9, "quadrilaterals"}, {11, "voxels"},
+      {12, "hexahedra"},      {13, "wedges"},  {14, "pyramids"},     {42, "polyhedra"}};
+  for (const auto& [known, name] : kNames)
+    if (type == known) return name;
+  return fmt::format("cells of VTK type {}", type);
 }
 
 const NamedArray* find_array(const VtkPiece& piece, const std::string& name) {

@@ -2,27 +2,20 @@
 // stops at appended data, which need not be XML. Format: VTK file formats, "XML file formats".
 #include "readers/vtu_document.h"
 
-#include <expat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
-#include <memory>
 #include <string_view>
 
-#include "errors.h"
 #include "readers/mesh_parts.h"
+#include "readers/xml_parser.h"
 
 namespace podm::verify {
 namespace {
 
 constexpr std::size_t kChunkBytes = 1 << 18, kLongestTag = 1 << 20;
 constexpr std::size_t kDeepest = 32;
-
-struct FreeParser {
-  void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
-};
 
 struct TypeName {
   std::string_view name;
@@ -41,35 +34,16 @@ bool is_facet_or_cell_label(const std::string& name) {
   return name == "label_a" || name == "label_b" || label_array_rank(name);
 }
 
-class VtuParser {
+class VtuParser : XmlParser {
  public:
-  explicit VtuParser(const MeshFile& file) : file_(file), parser_(XML_ParserCreate(nullptr)) {
-    if (!parser_) throw std::bad_alloc();
-    XML_SetUserData(parser_.get(), this);
-    XML_SetElementHandler(
-        parser_.get(),
-        [](void* self, const char* name, const char** attributes) {
-          static_cast<VtuParser*>(self)->guarded([&](VtuParser& p) { p.on_start(name, attributes); });
-        },
-        [](void* self, const char*) {
-          static_cast<VtuParser*>(self)->guarded([](VtuParser& p) { p.on_end(); });
-        });
-    XML_SetStartDoctypeDeclHandler(parser_.get(), [](void* self, const char*, const char*, const char*, int) {
-      static_cast<VtuParser*>(self)->guarded(
-          [](VtuParser& p) { p.refuse("a document type is declared; VTU files have none"); });
-    });
-  }
+  explicit VtuParser(const MeshFile& file) : XmlParser(file, "VTU") {}
 
   VtuDocument parse() {
     const std::string_view bytes = file_.bytes();
     for (std::size_t begin = 0; begin < bytes.size() && !document_.appended_begin; begin += kChunkBytes) {
       const std::string_view chunk = bytes.substr(begin, kChunkBytes);
       const std::size_t end = begin + chunk.size();
-      const auto status = XML_Parse(parser_.get(), chunk.data(), static_cast<int>(chunk.size()),
-                                    end == bytes.size() ? XML_TRUE : XML_FALSE);
-      if (failure_) std::rethrow_exception(failure_);
-      if (status == XML_STATUS_ERROR && !document_.appended_begin)
-        refuse(XML_ErrorString(XML_GetErrorCode(parser_.get())));
+      parse_part(chunk, end == bytes.size());
       if (end - position() > kLongestTag && !document_.appended_begin)
         refuse(fmt::format("a tag of more than {} bytes", kLongestTag));
     }
@@ -78,33 +52,11 @@ class VtuParser {
   }
 
  private:
-  // No exception may pass through expat: it is stored and the parser is stopped.
-  template <class Handle>
-  void guarded(Handle handle) {
-    if (failure_) return;
-    try {
-      handle(*this);
-    } catch (...) {
-      failure_ = std::current_exception();
-      XML_StopParser(parser_.get(), XML_FALSE);
-    }
-  }
-
-  std::size_t position() const { return static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get())); }
-  std::size_t after_tag() const {
-    return position() + static_cast<std::size_t>(XML_GetCurrentByteCount(parser_.get()));
-  }
-  std::size_t line() const { return XML_GetCurrentLineNumber(parser_.get()); }
-  [[noreturn]] void refuse(const std::string& fault) const {
-    file_.refuse(fmt::format("line {}", line()), fault);
-  }
-
-  void on_start(std::string_view name, const char** attributes) {
+  void on_start(std::string_view name) override {
     if (elements_.size() >= kDeepest) refuse("elements nest too deep");
     if (elements_.empty() && name != "VTKFile") refuse("the root element is not VTKFile");
     if (array_ != nullptr) end_text();
     elements_.emplace_back(name);
-    attributes_ = attributes;
     if (name == "VTKFile") {
       on_file();
     } else if (name == "Piece") {
@@ -117,7 +69,7 @@ class VtuParser {
     text_begin_ = after_tag();
   }
 
-  void on_end() {
+  void on_end() override {
     if (array_ != nullptr) end_text();
     if (array_depth_ == elements_.size()) array_ = nullptr;
     elements_.pop_back();
@@ -205,7 +157,7 @@ class VtuParser {
     const std::size_t mark = bytes.find_first_not_of(" \t\r\n", after_tag());
     if (mark == std::string_view::npos || bytes[mark] != '_') refuse("AppendedData does not begin with '_'");
     document_.appended_begin = mark + 1;
-    XML_StopParser(parser_.get(), XML_FALSE);
+    stop();
   }
 
   // No parser reads beyond appended data; the last tag shows if a file was cut off.
@@ -217,12 +169,6 @@ class VtuParser {
       file_.refuse(MeshFile::byte_at(bytes.size()), fmt::format("the file does not end with {}", kLastTag));
   }
 
-  std::string_view attribute(std::string_view name) const {
-    for (const char** a = attributes_; *a != nullptr; a += 2)
-      if (name == a[0]) return a[1];
-    return "";
-  }
-
   std::uint64_t number(const char* name) const {
     const std::string_view text = attribute(name);
     std::uint64_t value = 0;
@@ -232,9 +178,6 @@ class VtuParser {
     return value;
   }
 
-  const MeshFile& file_;
-  std::unique_ptr<XML_ParserStruct, FreeParser> parser_;
-  std::exception_ptr failure_;
   VtuDocument document_;
   std::vector<std::string> elements_;  // open elements, outermost first
   const char** attributes_ = nullptr;  // of the starting element

@@ -1,7 +1,6 @@
 // The reports of a run: lines for the terminal, JSON for programs, the cells in violation for a viewer.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

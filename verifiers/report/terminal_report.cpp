@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "report/reports.h"
 
 namespace podm::verify {
@@ -18,17 +20,9 @@ std::string witness_text(const Witness& witness) {
 
 const char* why_left_out(const Claim& claim, const Mesh& mesh) {
   if (mesh.unclaimed.contains(claim.name)) return "the file does not claim it";
-  switch (claim.needs) {
-    case Needs::kNothing:
-      break;
-    case Needs::kImage:
-      return "needs --image";
-    case Needs::kBound:
-      return "needs --radius";
-    case Needs::kDihedralBound:
-      return "needs --min-dihedral or --max-dihedral";
-  }
-  return "needs nothing";
+  constexpr std::array kWords{"needs nothing", "needs --image", "needs --radius",
+                              "needs --min-dihedral or --max-dihedral"};
+  return kWords[static_cast<std::size_t>(claim.needs)];
 }
 
 std::string left_out(const Mesh& mesh, const Options& options, const std::vector<ClaimResult>& results) {

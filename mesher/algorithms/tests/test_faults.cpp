@@ -7,6 +7,7 @@
 #include <string>
 
 #include "algorithms/podm.h"
+#include "delaunay/tests/validity.h"
 #include "failing_allocator.h"
 #include "failing_threads.h"
 #include "image/foreground.h"

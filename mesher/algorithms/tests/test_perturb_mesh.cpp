@@ -6,6 +6,7 @@
 
 #include "algorithms/podm.h"
 #include "delaunay/tests/cells_by_points.h"
+#include "delaunay/tests/validity.h"
 #include "image/foreground.h"
 #include "refine/dihedral_quality.h"
 #include "tests/images.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"
+#include "delaunay/tests/validity.h"
 #include "image/foreground.h"
 #include "refine/virtual_box.h"
 #include "tests/images.h"

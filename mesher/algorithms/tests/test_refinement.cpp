@@ -7,9 +7,10 @@
 
 #include "algorithms/podm.h"
 #include "algorithms/tests/broken_rule.h"
+#include "delaunay/tests/validity.h"
 #include "image/foreground.h"
 #include "podm/mesh_image.h"
-#include "refine/invariants.h"
+#include "refine/tests/invariants.h"
 #include "refine/virtual_box.h"
 #include "tests/images.h"
 

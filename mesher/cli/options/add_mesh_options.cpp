@@ -3,31 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "cli/options/add_options.h"
 
 namespace podm::cli {
 const char* title_of(OptionGroup group) {
-  switch (group) {
-    case OptionGroup::kLabels:
-      return "Labels";
-    case OptionGroup::kSize:
-      return "Size of the cells";
-    case OptionGroup::kSurfaces:
-      return "Surfaces";
-    case OptionGroup::kDihedral:
-      return "Dihedral angles";
-    case OptionGroup::kLimits:
-      return "Limits (a run that reaches one writes a valid mesh and exits with 1)";
-    case OptionGroup::kOutput:
-      return "Output";
-    case OptionGroup::kAlgorithm:
-      return "Algorithm";
-    case OptionGroup::kRun:
-      break;
-  }
-  return "Run";
+  constexpr std::array kTitles{"Labels",
+                               "Size of the cells",
+                               "Surfaces",
+                               "Dihedral angles",
+                               "Limits (a run that reaches one writes a valid mesh and exits with 1)",
+                               "Output",
+                               "Algorithm",
+                               "Run"};
+  return kTitles[static_cast<std::size_t>(group)];
 }
 
 namespace {

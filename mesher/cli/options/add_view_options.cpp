@@ -1,9 +1,6 @@
 // The options of podm view.
 #include <fmt/format.h>
 
-#include <cctype>
-#include <string_view>
-
 #include "cli/options/add_options.h"
 
 namespace podm::cli {
@@ -75,21 +72,14 @@ void add_cut_options(CLI::App& app, ViewCommand& command) {
   add_one(app, "--cut", "PLANE",
           "omit cells beyond this plane: an axis or a normal, and a place, as a\n"
           "fraction of the mesh's extent or in mm: x=0.5, z=-20mm, 1,1,0=0.3;\nor none",
-          {[&command](const std::string& text, const std::string& name) {
-             command.cut = parse_plane(text, name);
-           },
-           "y=0.5"});
+          into(command.cut, parse_plane, "y=0.5"));
   add_flag(app, "--flip", command.flip,
            "omit the cells on the other side of the cut, and look from there [default: no]");
   add_one(app, "--labels", "NAMES",
           "show only these labels, by name or value, e.g. liver,spleen [default: all]",
-          [&command](const std::string& text, const std::string& name) {
-            command.labels = parse_names(text, name);
-          });
+          into(command.labels, parse_names));
   add_one(app, "--hide", "NAMES", "show all labels except these [default: none]",
-          [&command](const std::string& text, const std::string& name) {
-            command.hide = parse_names(text, name);
-          });
+          into(command.hide, parse_names));
 }
 
 void add_look_options(CLI::App& app, ViewCommand& command) {
@@ -109,15 +99,9 @@ void add_look_options(CLI::App& app, ViewCommand& command) {
   add_one(app, "--zoom", "X", "magnification; at 1 the whole mesh fits the picture",
           into_positive(command.zoom, "number"));
   add_one(app, "--size", "WxH", "size of the picture, pixels",
-          {[&command](const std::string& text, const std::string& name) {
-             command.size = parse_size(text, name);
-           },
-           fmt::format("{}x{}", command.size[0], command.size[1])});
+          into(command.size, parse_size, fmt::format("{}x{}", command.size[0], command.size[1])));
   add_one(app, "--background", "COLOUR", "white, black or #rrggbb",
-          {[&command](const std::string& text, const std::string& name) {
-             command.background = parse_colour(text, name);
-           },
-           "white"});
+          into(command.background, parse_colour, "white"));
   add_flag(app, "--no-legend", command.without_legend,
            "omit the legend of colours [default: it is at the right]");
 }

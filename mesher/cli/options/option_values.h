@@ -140,6 +140,12 @@ struct Target {
 };
 
 Target into(std::string& text);
+/// Stores what parse(text, name) returns.
+template <class Value, class Parse>
+Target into(Value& value, Parse parse, std::string default_text = "") {
+  return {[&value, parse](const std::string& text, const std::string& name) { value = parse(text, name); },
+          std::move(default_text)};
+}
 /// `quantity` describes the number: see parse_positive().
 Target into_positive(double& value, const std::string& quantity);
 template <Named Choice>

@@ -1,7 +1,6 @@
 #include "cli/processes/ranks_of_machine.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <fstream>
 
 #include "distributed/messages.h"
+#include "runtime/placement.h"
 
 namespace podm::cli {
 namespace {
@@ -27,16 +27,6 @@ std::string host_name() {
   return name.data();
 }
 
-std::vector<int> usable_processors() {
-  std::vector<int> processors;
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof set, &set) != 0) throw InternalError("sched_getaffinity failed");
-  for (int i = 0; i < CPU_SETSIZE; ++i)
-    if (CPU_ISSET(i, &set)) processors.push_back(i);
-  return processors;
-}
-
 }  // namespace
 
 RanksOfMachine::RanksOfMachine(Communication& ranks)
@@ -44,7 +34,7 @@ RanksOfMachine::RanksOfMachine(Communication& ranks)
   Bytes message;
   append(message, std::span<const char>(boot_id()));
   append(message, std::span<const char>(host_name()));
-  append(message, usable_processors());
+  append(message, processors_of_this_thread());
   std::vector<std::string> ids;
   for (const Bytes& received : ranks.all_gather(std::move(message))) {
     MessageReader reader(received);

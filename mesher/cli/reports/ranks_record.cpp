@@ -11,7 +11,11 @@
 #include "distributed/messages.h"
 #include "podm/mesh_io.h"
 
-namespace podm::cli {
+namespace podm {
+
+PODM_TO_JSON(PhaseSeconds, computing_s, waiting_s, network_s)
+
+namespace cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -85,15 +89,6 @@ Json rounds_of(const std::vector<PartOfRank>& parts) {
   return rounds;
 }
 
-Json spent_of(const PartOfRank& part) {
-  Json spent = Json::object();
-  for (const auto& [phase, of_phase] : part.spent)
-    spent[phase] = {{"computing_s", of_phase.computing_s},
-                    {"waiting_s", of_phase.waiting_s},
-                    {"network_s", of_phase.network_s}};
-  return spent;
-}
-
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
 
 // Returns true if virtual times are complete: the clock measures a rank's own thread and no threads that it
@@ -128,7 +123,7 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
                        {"store_cells", part.store_cells},
                        {"peak_rss_bytes", memory_of(spent[rank])},
                        {"phases_s", part.phases_s},
-                       {"spent", spent_of(part)},
+                       {"spent", part.spent},
                        {"virtual", virtual_time_of(spent[rank])}});
     last += part.last_update;
   }
@@ -217,4 +212,5 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
                    fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }
 
-}  // namespace podm::cli
+}  // namespace cli
+}  // namespace podm

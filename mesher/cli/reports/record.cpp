@@ -9,25 +9,31 @@
 #include "cli/reports/json_text.h"
 #include "io/sha256.h"
 
-namespace podm::cli {
+namespace podm {
+
+PODM_TO_JSON(LabelSelection::Merge, values, name)
+PODM_TO_JSON(InterfaceSize, labels, radius_mm, width_mm)
+PODM_TO_JSON(PageSamples::OfArray, as_claimed, elsewhere, untouched)
+PODM_TO_JSON(Calibration::TrialMesh, radius_mm, cells, seconds)
+PODM_TO_JSON(Calibration, target_elements, radius_mm, meshes, seconds)
+PODM_TO_JSON(PerturbationReport::Cells, with_free_vertex, without)
+PODM_TO_JSON(SmoothingReport::OfLabel, value, voxels_mm3, smoothed_mm3, voxels_components,
+             smoothed_components, is_thin)
+PODM_TO_JSON(SmoothingReport, width_mm, labels)
+PODM_TO_JSON(Quality, max_radius_edge, min_facet_angle_deg, max_facet_angle_deg, min_dihedral_deg,
+             max_dihedral_deg, max_radius_mm, shortest_edge_mm)
+PODM_TO_JSON(Guarantees, radius_edge, facet_angle, radius, facet_vertices, orientation, missing_labels)
+
+namespace cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ranges(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& closed_ranges) {
-  Json array = Json::array();
-  for (const auto& [first, last] : closed_ranges) array.push_back({first, last});
-  return array;
-}
-
 Json selection_of(const LabelSelection& selection) {
-  Json merges = Json::array();
-  for (const auto& merge : selection.merges)
-    merges.push_back({{"values", merge.values}, {"name", merge.name}});
   return {{"background", selection.background},
-          {"keep", ranges(selection.keep)},
-          {"drop", ranges(selection.drop)},
-          {"merge", merges},
+          {"keep", selection.keep},
+          {"drop", selection.drop},
+          {"merge", selection.merges},
           {"drop_islands_mm3", selection.drop_islands_mm3}};
 }
 
@@ -55,13 +61,6 @@ Json size_image_of(const MeshRun& run) {
   return {{"path", path}, {"sha256", file_sha256(path)}};
 }
 
-Json size_near_of(const SizeOptions& sizes) {
-  Json all = Json::array();
-  for (const InterfaceSize& near : sizes.near)
-    all.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
-  return all;
-}
-
 // The options as given; 0 means what it means in MeshingOptions. Labels are those of the image.
 Json options_of(const MeshRun& run) {
   Json options = option_values(run.command);
@@ -69,13 +68,16 @@ Json options_of(const MeshRun& run) {
   for (const auto& [value, radius_mm] : run.options.sizes.radius_of_mm)
     radius_of[std::to_string(value)] = radius_mm;
   options["size_image"] = size_image_of(run);
-  options["size_near"] = size_near_of(run.options.sizes);
+  options["size_near"] = run.options.sizes.near;
   options["optimize"] = optimize_of(run.options.optimize);
   options["labels"] = selection_of(run.command.image.selection);
   return options;
 }
 
-Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
 
 // Returns the place of each worker. Processors have the system's numbers; nodes and sockets are counted from
 // 0.
@@ -114,9 +116,7 @@ Json pages_of(const MeshingReport& report) {
   Json phases = Json::object();
   for (const PageSamples::AtPhase& at : report.pages.phases) {
     Json& phase = phases[at.phase];
-    for (const PageSamples::OfArray& pages : at.arrays)
-      phase[pages.array] = {
-          {"as_claimed", pages.as_claimed}, {"elsewhere", pages.elsewhere}, {"untouched", pages.untouched}};
+    for (const PageSamples::OfArray& pages : at.arrays) phase[pages.array] = pages;
     phase["accesses_by_hops"] = at.accesses_by_hops;
   }
   return phases;
@@ -195,32 +195,17 @@ Json virtual_of(const MeshRun& run) {
           {"machine", simulated_machine_of(run)}};
 }
 
-Json calibration_of(const MeshingReport& report) {
-  if (!report.calibration) return nullptr;
-  const Calibration& calibration = *report.calibration;
-  Json meshes = Json::array();
-  for (const Calibration::TrialMesh& mesh : calibration.meshes)
-    meshes.push_back({{"radius_mm", mesh.radius_mm}, {"cells", mesh.cells}, {"seconds", mesh.seconds}});
-  return {{"target_elements", calibration.target_elements},
-          {"radius_mm", calibration.radius_mm},
-          {"meshes", meshes},
-          {"seconds", calibration.seconds}};
-}
-
 // Returns null if R7 was not requested, or the run ended before it.
 Json perturbation_of(const MeshingReport& report) {
   if (!report.perturbation) return nullptr;
   const PerturbationReport& perturbation = *report.perturbation;
-  const auto cells = [](const PerturbationReport::Cells& of) {
-    return Json{{"with_free_vertex", of.with_free_vertex}, {"without", of.without}};
-  };
   Json unmoved = {{"not_reached", perturbation.not_reached}};
   for (const auto& [why, name] : Names<Unmoved>::kAll)
     unmoved[name] = perturbation.unmoved[static_cast<std::size_t>(why)];
   return {{"min_dihedral_deg", perturbation.min_dihedral_deg},
           {"max_dihedral_deg", perturbation.max_dihedral_deg},
-          {"before", cells(perturbation.before)},
-          {"after", cells(perturbation.after)},
+          {"before", perturbation.before},
+          {"after", perturbation.after},
           {"unmoved", unmoved}};
 }
 
@@ -232,20 +217,6 @@ Json counts_of(const std::map<Choice, std::uint64_t>& counts) {
     json[name] = found == counts.end() ? 0 : found->second;
   }
   return json;
-}
-
-// Returns null if interfaces were not smoothed.
-Json smoothing_of(const MeshingReport& report) {
-  if (!report.smoothing) return nullptr;
-  Json labels = Json::array();
-  for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
-    labels.push_back({{"value", label.value},
-                      {"voxels_mm3", label.voxels_mm3},
-                      {"smoothed_mm3", label.smoothed_mm3},
-                      {"voxels_components", label.voxels_components},
-                      {"smoothed_components", label.smoothed_components},
-                      {"is_thin", label.is_thin}});
-  return {{"width_mm", report.smoothing->width_mm}, {"labels", labels}};
 }
 
 Json optimization_of(const MeshingReport& report) {
@@ -268,11 +239,6 @@ Json verify_of(const MeshRun& run) {
   return {{"claims", judging.claims}, {"options", judging.options}};
 }
 
-Json promised_dihedral_of(const MeshingReport& report) {
-  if (!report.promised_dihedral_deg) return nullptr;
-  return *report.promised_dihedral_deg;
-}
-
 // Returns the claims of podm-verify that an optimised mesh keeps.
 Json promises_of(const MeshingReport& report) {
   Json claims = {"structure", "radius_edge", "boundary_angles",  "size",    "conformity",
@@ -289,22 +255,6 @@ Json leaves_of(const MeshRun& run) {
           {"initial_ratio", run.options.leaves.initial_ratio},
           {"initial_threads", run.options.team.initial_threads},
           {"leaf_size_mm", run.options.leaves.size_mm}};
-}
-
-Json quality_of(const Quality& quality) {
-  return {{"max_radius_edge", quality.max_radius_edge},
-          {"min_facet_angle_deg", quality.min_facet_angle_deg},
-          {"max_facet_angle_deg", quality.max_facet_angle_deg},
-          {"min_dihedral_deg", quality.min_dihedral_deg},
-          {"max_dihedral_deg", quality.max_dihedral_deg},
-          {"max_radius_mm", quality.max_radius_mm},
-          {"shortest_edge_mm", quality.shortest_edge_mm}};
-}
-
-Json guarantees_of(const Guarantees& misses) {
-  return {{"radius_edge", misses.radius_edge}, {"facet_angle", misses.facet_angle},
-          {"radius", misses.radius},           {"facet_vertices", misses.facet_vertices},
-          {"orientation", misses.orientation}, {"missing_labels", misses.missing_labels}};
 }
 
 Json labels_of(const MeshRun& run) {
@@ -364,7 +314,7 @@ Json record(const MeshRun& run) {
       {"virtual", virtual_of(run)},
       {"verify", verify_of(run)},
       {"phases_s", run.phases_s()},
-      {"calibration", calibration_of(report)},
+      {"calibration", or_null(report.calibration)},
       {"cells", run.mesh.cells},
       {"vertices", run.mesh.vertices},
       {"boundary_facets", run.mesh.boundary_facets},
@@ -380,12 +330,12 @@ Json record(const MeshRun& run) {
       {"pages", pages_of(report)},
       {"counters", counters_of(report)},
       {"workers", workers_of(report)},
-      {"quality", quality_of(report.quality)},
+      {"quality", report.quality},
       {"perturbed", perturbation_of(report)},
-      {"smoothing", smoothing_of(report)},
+      {"smoothing", or_null(report.smoothing)},
       {"optimization", optimization_of(report)},
-      {"promised_dihedral_deg", promised_dihedral_of(report)},
-      {"guarantees", guarantees_of(report.guarantees)},
+      {"promised_dihedral_deg", or_null(report.promised_dihedral_deg)},
+      {"guarantees", report.guarantees},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts()},
       {"stop_reason", to_string(report.stop_reason)},
@@ -395,4 +345,5 @@ Json record(const MeshRun& run) {
   return record;
 }
 
-}  // namespace podm::cli
+}  // namespace cli
+}  // namespace podm

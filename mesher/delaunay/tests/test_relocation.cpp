@@ -6,6 +6,7 @@
 #include "cells_by_points.h"
 #include "delaunay/operation.h"
 #include "delaunay/relocation.h"
+#include "delaunay/tests/validity.h"
 #include "point_sets.h"
 #include "runtime/parallel_for.h"
 

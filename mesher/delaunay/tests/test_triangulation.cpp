@@ -5,6 +5,7 @@
 #include <set>
 
 #include "delaunay/hole.h"
+#include "delaunay/tests/validity.h"
 #include "point_sets.h"
 #include "triangulator.h"
 

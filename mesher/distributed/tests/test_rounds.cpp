@@ -1,4 +1,5 @@
 // The ranks together make one Delaunay mesh to which no rule applies. Each rank has its part of the mesh.
+#include "delaunay/tests/validity.h"
 #include "distributed/rounds.h"
 
 #include <gtest/gtest.h>

@@ -8,6 +8,7 @@
 #include "delaunay/planted_fault.h"
 #include "delaunay/tests/point_sets.h"
 #include "delaunay/tests/triangulator.h"
+#include "delaunay/tests/validity.h"
 #include "distributed/zone.h"
 
 namespace podm::test {

@@ -34,40 +34,19 @@ struct LabelSelection {
     using enum OptionGroup;
     constexpr unsigned kUses = kInPodm | kOnRanks | kInPython;
     return std::tuple{
-        option(&L::keep, {.name = "labels",
-                          .type = "RANGES",
-                          .group = kLabels,
-                          .help = "keep only these label values, e.g. 1,3-7",
-                          .unset = "all",
-                          .uses = kUses,
-                          .keyword = "keep"}),
-        option(&L::drop, {.name = "drop",
-                          .type = "RANGES",
-                          .group = kLabels,
-                          .help = "turn these label values into background",
-                          .unset = "none",
-                          .uses = kUses}),
-        option(&L::merges, {.name = "merge",
-                            .type = "VALUES=NAME",
-                            .group = kLabels,
-                            .help = "merge several labels into one, e.g. 2,3=kidney; repeatable",
-                            .unset = "none",
-                            .uses = kUses}),
-        option(&L::drop_islands_mm3,
-               {.name = "drop-islands",
-                .type = "MM3",
-                .group = kLabels,
-                .help = "relabel components (voxels joined by faces) smaller than this, mm^3, to the\n"
-                        "neighbour that shares the largest area",
-                .unset = "none",
-                .uses = kUses,
-                .quantity = "volume in mm^3"}),
-        option(&L::background, {.name = "background",
-                                .type = "VALUE",
-                                .group = kLabels,
-                                .help = "label value of the background",
-                                .uses = kUses,
-                                .least = 0})};
+        option(&L::keep, "labels", "RANGES", kLabels, "keep only these label values, e.g. 1,3-7",
+               {.unset = "all", .uses = kUses, .keyword = "keep"}),
+        option(&L::drop, "drop", "RANGES", kLabels, "turn these label values into background",
+               {.unset = "none", .uses = kUses}),
+        option(&L::merges, "merge", "VALUES=NAME", kLabels,
+               "merge several labels into one, e.g. 2,3=kidney; repeatable",
+               {.unset = "none", .uses = kUses}),
+        option(&L::drop_islands_mm3, "drop-islands", "MM3", kLabels,
+               "relabel components (voxels joined by faces) smaller than this, mm^3, to the\n"
+               "neighbour that shares the largest area",
+               {.unset = "none", .uses = kUses, .quantity = "volume in mm^3"}),
+        option(&L::background, "background", "VALUE", kLabels, "label value of the background",
+               {.uses = kUses, .least = 0})};
   }
 };
 

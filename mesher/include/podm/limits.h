@@ -20,19 +20,11 @@ struct Limits {
   static constexpr auto options() {
     using L = Limits;
     using enum OptionGroup;
-    return std::tuple{option(&L::max_elements, {.name = "max-elements",
-                                                .type = "N",
-                                                .group = kLimits,
-                                                .help = "stop at this number of cells",
-                                                .unset = "none",
-                                                .uses = kInPodm | kOnRanks | kInPython}),
-                      option(&L::max_seconds, {.name = "max-seconds",
-                                               .type = "S",
-                                               .group = kLimits,
-                                               .help = "stop meshing after this number of seconds",
-                                               .unset = "none",
-                                               .uses = kInPodm | kOnRanks | kInPython,
-                                               .quantity = "number of seconds"})};
+    return std::tuple{
+        option(&L::max_elements, "max-elements", "N", kLimits, "stop at this number of cells",
+               {.unset = "none", .uses = kInPodm | kOnRanks | kInPython}),
+        option(&L::max_seconds, "max-seconds", "S", kLimits, "stop meshing after this number of seconds",
+               {.unset = "none", .uses = kInPodm | kOnRanks | kInPython, .quantity = "number of seconds"})};
   }
 };
 

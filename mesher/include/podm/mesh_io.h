@@ -43,12 +43,9 @@ struct MeshFileOptions {
   std::optional<GmshVersion> gmsh_version = {};  ///< for .msh alone; none: 4.1
 
   static constexpr auto options() {
-    return std::tuple{option(&MeshFileOptions::gmsh_version,
-                             {.name = "gmsh-version",
-                              .group = OptionGroup::kOutput,
-                              .help = "version of a .msh file; FreeFem++ and SfePy read 2.2",
-                              .unset = "4.1",
-                              .uses = kInPodm})};
+    return std::tuple{option(&MeshFileOptions::gmsh_version, "gmsh-version", "", OptionGroup::kOutput,
+                             "version of a .msh file; FreeFem++ and SfePy read 2.2",
+                             {.unset = "4.1", .uses = kInPodm})};
   }
 };
 

@@ -60,58 +60,41 @@ struct SizeOptions {
     using S = SizeOptions;
     using enum OptionGroup;
     return std::tuple{
-        option(&S::radius_mm, {.name = "radius",
-                               .type = "MM",
-                               .group = kSize,
-                               .help = "upper bound on the circumradius of each cell, mm",
-                               .unset = "unbounded, the surfaces alone decide",
-                               .record = "radius_mm",
-                               .uses = kInAll | kInPlan,
-                               .quantity = "length in mm"}),
-        option(&S::delta_mm, {.name = "delta",
-                              .type = "MM",
-                              .group = kSize,
-                              .help = "sampling distance of the surfaces, mm",
-                              .unset = "from the voxel size and the radius",
-                              .record = "delta_mm",
-                              .uses = kInAll | kInPlan,
-                              .quantity = "length in mm"}),
-        option(&S::target_elements,
-               {.name = "target-elements",
-                .type = "N",
-                .group = kSize,
-                .help = "choose the radius, and the factor of --size-image, for this number of cells",
-                .unset = "none",
+        option(&S::radius_mm, "radius", "MM", kSize, "upper bound on the circumradius of each cell, mm",
+               {.unset = "unbounded, the surfaces alone decide",
+                .record = "radius_mm",
+                .uses = kInAll | kInPlan,
+                .quantity = "length in mm"}),
+        option(&S::delta_mm, "delta", "MM", kSize, "sampling distance of the surfaces, mm",
+               {.unset = "from the voxel size and the radius",
+                .record = "delta_mm",
+                .uses = kInAll | kInPlan,
+                .quantity = "length in mm"}),
+        option(&S::target_elements, "target-elements", "N", kSize,
+               "choose the radius, and the factor of --size-image, for this number of cells",
+               {.unset = "none",
                 .uses = kInAll | kInPlan,
                 .not_on_ranks = "the search for the radius needs the whole mesh several times",
                 .excludes = "radius"}),
-        option(&S::target_tolerance_percent,
-               {.name = "target-tolerance",
-                .type = "PERCENT",
-                .group = kSize,
-                .help = "largest difference of the number of cells from the target, %",
-                .record = "target_tolerance_percent",
+        option(&S::target_tolerance_percent, "target-tolerance", "PERCENT", kSize,
+               "largest difference of the number of cells from the target, %",
+               {.record = "target_tolerance_percent",
                 .uses = kInAll | kInPlan,
                 .not_on_ranks = "the search for the radius needs the whole mesh several times",
                 .most = 100,
                 .quantity = "percentage",
                 .needs = "target-elements"}),
-        option(&S::target_meshes,
-               {.name = "target-meshes",
-                .type = "N",
-                .group = kSize,
-                .help = "largest number of meshes made for the target; 1 takes the predicted radius",
-                .uses = kInPodm | kInPython,
+        option(&S::target_meshes, "target-meshes", "N", kSize,
+               "largest number of meshes made for the target; 1 takes the predicted radius",
+               {.uses = kInPodm | kInPython,
                 .not_on_ranks = "the search for the radius needs the whole mesh several times",
                 .most = 100,
                 .needs = "target-elements"}),
-        option(&S::grade, {.name = "grade",
-                           .type = "G",
-                           .group = kSize,
-                           .help = "limit the growth of all bounds on sizes, of labels too, to G mm per mm",
-                           .unset = "no limit",
-                           .uses = kInAll | kInPlan,
-                           .not_on_ranks = "the graded grid covers the whole image"})};
+        option(&S::grade, "grade", "G", kSize,
+               "limit the growth of all bounds on sizes, of labels too, to G mm per mm",
+               {.unset = "no limit",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "the graded grid covers the whole image"})};
   }
 };
 
@@ -143,85 +126,48 @@ struct TeamOptions {
     using T = TeamOptions;
     using enum OptionGroup;
     return std::tuple{
-        option(&T::threads,
-               {.name = "threads",
-                .type = "N",
-                .group = kRun,
-                .help = "threads of all phases; 1 makes the same mesh every time",
-                .unset = "one for refinement, all cores for the other phases",
+        option(&T::threads, "threads", "N", kRun, "threads of all phases; 1 makes the same mesh every time",
+               {.unset = "one for refinement, all cores for the other phases",
                 .uses = kInAll | kInPlan,
                 .most = kMostThreads,
                 .help_on_ranks =
                     "threads of each rank, in all phases; with 1 the same number of ranks makes the\n"
                     "same mesh every time",
                 .unset_on_ranks = "processors over the ranks of the machine; 1 in process"}),
-        option(&T::contention, {.name = "contention",
-                                .group = kRun,
-                                .help = "policy of a thread that meets another thread's lock"}),
-        option(&T::begging, {.name = "begging",
-                             .group = kRun,
-                             .help = "idle thread that gets work first: random (the first that asked) or\n"
-                                     "hierarchical (the nearest in the machine)"}),
-        option(&T::executor,
-               {.name = "executor",
-                .group = kRun,
-                .help = "threads; or virtual: one core plays any number of threads in virtual time,\n"
-                        "with the same result for the same seed; times are then simulated"}),
-        option(&T::pin, {.name = "pin",
-                         .type = "PLAN",
-                         .group = kRun,
-                         .help = "bind threads to processors: compact, scatter, none,\n"
-                                 "or processors such as 0,2,4-7"}),
-        option(&T::oversubscribe, {.name = "oversubscribe",
-                                   .group = kRun,
-                                   .help = "allow more threads than processors",
-                                   .unset = "refused",
-                                   .uses = kInAll | kInPlan}),
-        option(&T::nodes, {.name = "nodes",
-                           .type = "N",
-                           .group = kAlgorithm,
-                           .help = "computing nodes of pdr-podm and podm-home",
-                           .unset = "NUMA nodes in use",
-                           .most = kMostThreads}),
-        option(&T::cores_per_node, {.name = "cores-per-node",
-                                    .type = "N",
-                                    .group = kAlgorithm,
-                                    .help = "threads of each computing node",
-                                    .unset = "threads over nodes",
-                                    .most = kMostThreads}),
-        option(&T::initial_threads, {.name = "initial-threads",
-                                     .type = "N",
-                                     .group = kAlgorithm,
-                                     .help = "threads that make the initial mesh of pdr and pdr-podm",
-                                     .unset = "all",
-                                     .most = kMostThreads}),
-        option(&T::seed,
-               {.name = "seed",
-                .type = "N",
-                .group = kRun,
-                .help = "seed of the pauses after conflicts and of virtual time",
-                .least = 0,
+        option(&T::contention, "contention", "", kRun, "policy of a thread that meets another thread's lock"),
+        option(&T::begging, "begging", "", kRun,
+               "idle thread that gets work first: random (the first that asked) or\n"
+               "hierarchical (the nearest in the machine)"),
+        option(&T::executor, "executor", "", kRun,
+               "threads; or virtual: one core plays any number of threads in virtual time,\n"
+               "with the same result for the same seed; times are then simulated"),
+        option(&T::pin, "pin", "PLAN", kRun,
+               "bind threads to processors: compact, scatter, none,\n"
+               "or processors such as 0,2,4-7"),
+        option(&T::oversubscribe, "oversubscribe", "", kRun, "allow more threads than processors",
+               {.unset = "refused", .uses = kInAll | kInPlan}),
+        option(&T::nodes, "nodes", "N", kAlgorithm, "computing nodes of pdr-podm and podm-home",
+               {.unset = "NUMA nodes in use", .most = kMostThreads}),
+        option(&T::cores_per_node, "cores-per-node", "N", kAlgorithm, "threads of each computing node",
+               {.unset = "threads over nodes", .most = kMostThreads}),
+        option(&T::initial_threads, "initial-threads", "N", kAlgorithm,
+               "threads that make the initial mesh of pdr and pdr-podm",
+               {.unset = "all", .most = kMostThreads}),
+        option(&T::seed, "seed", "N", kRun, "seed of the pauses after conflicts and of virtual time",
+               {.least = 0,
                 .help_on_ranks = "0: blocks of equal predicted work; otherwise the seed of where blocks are\n"
                                  "cut, of pauses, and of the order in which ranks in process compute",
                 .unset_on_ranks = "0"}),
-        option(&T::topology_path,
-               {.name = "topology",
-                .type = "FILE",
-                .group = kRun,
-                .help = "machine that the threads stand for: hwloc XML, or TOML with its costs\n"
-                        "(NAME.toml, see experiments/machines)",
-                .unset = "this machine"}),
-        option(&T::cost_factor,
-               {.name = "cost-factor",
-                .type = "NAME=FACTOR",
-                .group = kRun,
-                .help = "multiply one constant of a machine in TOML by a factor; 0 switches it off.\n"
-                        "results/README.md lists the names",
-                .unset = "none"}),
-        option(&T::virtual_cost,
-               {.name = "virtual-cost",
-                .group = kRun,
-                .help = "virtual time of an attempt: unit (1 us) or measured (by its work)"})};
+        option(&T::topology_path, "topology", "FILE", kRun,
+               "machine that the threads stand for: hwloc XML, or TOML with its costs\n"
+               "(NAME.toml, see experiments/machines)",
+               {.unset = "this machine"}),
+        option(&T::cost_factor, "cost-factor", "NAME=FACTOR", kRun,
+               "multiply one constant of a machine in TOML by a factor; 0 switches it off.\n"
+               "results/README.md lists the names",
+               {.unset = "none"}),
+        option(&T::virtual_cost, "virtual-cost", "", kRun,
+               "virtual time of an attempt: unit (1 us) or measured (by its work)")};
   }
 };
 
@@ -234,18 +180,12 @@ struct LeafOptions {
   static constexpr auto options() {
     using L = LeafOptions;
     using enum OptionGroup;
-    return std::tuple{option(&L::initial_ratio, {.name = "initial-ratio",
-                                                 .type = "X",
-                                                 .group = kAlgorithm,
-                                                 .help = "bounds of the initial mesh of pdr, pdr-podm and\n"
-                                                         "podm-mpi over the final ones",
-                                                 .least = 1}),
-                      option(&L::size_mm, {.name = "leaf-size",
-                                           .type = "MM",
-                                           .group = kAlgorithm,
-                                           .help = "side of the octree's leaves, mm",
-                                           .unset = "from the bounds of the initial mesh",
-                                           .quantity = "length in mm"})};
+    return std::tuple{option(&L::initial_ratio, "initial-ratio", "X", kAlgorithm,
+                             "bounds of the initial mesh of pdr, pdr-podm and\n"
+                             "podm-mpi over the final ones",
+                             {.least = 1}),
+                      option(&L::size_mm, "leaf-size", "MM", kAlgorithm, "side of the octree's leaves, mm",
+                             {.unset = "from the bounds of the initial mesh", .quantity = "length in mm"})};
   }
 };
 
@@ -261,21 +201,15 @@ struct OptimizeOptions {
     using O = OptimizeOptions;
     using enum OptionGroup;
     return std::tuple{
-        option(&O::is_wanted,
-               {.name = "optimize",
-                .group = kDihedral,
-                .help = "improve the worst cells of the finished mesh; surfaces and all other bounds\n"
-                        "stay, but the mesh is no longer Delaunay",
-                .unset = "no",
-                .uses = kInAll | kInPlan,
-                .not_on_ranks = "optimisation works on a whole mesh"}),
-        option(&O::dihedral_bounds_deg,
-               {.name = "dihedral-bounds",
-                .type = "MIN,MAX",
-                .group = kDihedral,
-                .help = "least and largest dihedral angle of a cell, degrees; the aim is half as much\n"
-                        "again; cells that surfaces keep beyond the bounds are counted",
-                .uses = kInAll | kInPlan,
+        option(
+            &O::is_wanted, "optimize", "", kDihedral,
+            "improve the worst cells of the finished mesh; surfaces and all other bounds\n"
+            "stay, but the mesh is no longer Delaunay",
+            {.unset = "no", .uses = kInAll | kInPlan, .not_on_ranks = "optimisation works on a whole mesh"}),
+        option(&O::dihedral_bounds_deg, "dihedral-bounds", "MIN,MAX", kDihedral,
+               "least and largest dihedral angle of a cell, degrees; the aim is half as much\n"
+               "again; cells that surfaces keep beyond the bounds are counted",
+               {.uses = kInAll | kInPlan,
                 .not_on_ranks = "optimisation works on a whole mesh",
                 .needs = "optimize"})};
   }
@@ -307,46 +241,35 @@ struct MeshingOptions {
     using M = MeshingOptions;
     using enum OptionGroup;
     return std::tuple{
-        option(&M::algorithm,
-               {.name = "algorithm",
-                .group = kAlgorithm,
-                .help = "podm: all threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
-                        "each by a node of several threads; pdr: leaf by leaf, one thread each, no locks;\n"
-                        "podm-home: podm by nodes of several threads, each in its own block of space;\n"
-                        "auto: podm, or podm-home on threads pinned to several NUMA nodes",
-                .uses = kInAll | kInPlan}),
+        option(&M::algorithm, "algorithm", "", kAlgorithm,
+               "podm: all threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
+               "each by a node of several threads; pdr: leaf by leaf, one thread each, no locks;\n"
+               "podm-home: podm by nodes of several threads, each in its own block of space;\n"
+               "auto: podm, or podm-home on threads pinned to several NUMA nodes",
+               {.uses = kInAll | kInPlan}),
         nested(&M::sizes),
         nested(&M::team),
         nested(&M::leaves),
-        option(&M::crossover,
-               {.name = "crossover",
-                .type = "N",
-                .group = kAlgorithm,
-                .help = "number of threads below which pdr-podm and auto are exactly podm; from it\n"
-                        "on auto is podm-home",
-                .unset = "pdr-podm has none, auto follows NUMA nodes",
+        option(&M::crossover, "crossover", "N", kAlgorithm,
+               "number of threads below which pdr-podm and auto are exactly podm; from it\n"
+               "on auto is podm-home",
+               {.unset = "pdr-podm has none, auto follows NUMA nodes",
                 .not_on_ranks = "ranks have threads of their own",
                 .most = kMostThreads}),
-        option(&M::smoothing_mm,
-               {.name = "smooth",
-                .type = "MM",
-                .group = kSurfaces,
-                .help = "blur all labels with a Gaussian of this width, mm; interfaces lie where the two\n"
-                        "largest weights are equal, and voxels keep their labels; about 1.5 voxels;\n"
-                        "thin parts are blurred less",
-                .unset = "interfaces follow the voxels",
+        option(&M::smoothing_mm, "smooth", "MM", kSurfaces,
+               "blur all labels with a Gaussian of this width, mm; interfaces lie where the two\n"
+               "largest weights are equal, and voxels keep their labels; about 1.5 voxels;\n"
+               "thin parts are blurred less",
+               {.unset = "interfaces follow the voxels",
                 .record = "smoothing_mm",
                 .uses = kInAll | kInPlan,
                 .not_on_ranks = "the weights of all voxels would be on every rank",
                 .quantity = "length in mm"}),
-        option(&M::min_dihedral_deg,
-               {.name = "min-dihedral",
-                .type = "DEG",
-                .group = kDihedral,
-                .help = "at the end move vertices until almost no cell with an interior vertex has a\n"
-                        "dihedral angle below this, degrees, or above 175 less 1.25 times this; all\n"
-                        "bounds are kept, and the mesh stays Delaunay",
-                .unset = "nothing moves",
+        option(&M::min_dihedral_deg, "min-dihedral", "DEG", kDihedral,
+               "at the end move vertices until almost no cell with an interior vertex has a\n"
+               "dihedral angle below this, degrees, or above 175 less 1.25 times this; all\n"
+               "bounds are kept, and the mesh stays Delaunay",
+               {.unset = "nothing moves",
                 .record = "min_dihedral_deg",
                 .uses = kInAll | kInPlan,
                 .not_on_ranks = "vertices near the faces of blocks would have to move on two ranks at once",
@@ -354,10 +277,9 @@ struct MeshingOptions {
                 .quantity = "angle in degrees"}),
         nested(&M::optimize),
         nested(&M::limits),
-        option(&M::space, {.name = "space",
-                           .group = kOutput,
-                           .help = "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
-                           .uses = kInPodm | kOnRanks | kInPython})};
+        option(&M::space, "space", "", kOutput,
+               "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
+               {.uses = kInPodm | kOnRanks | kInPython})};
   }
 };
 

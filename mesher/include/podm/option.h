@@ -31,11 +31,8 @@ enum OptionUse : unsigned {
   kOfFiles = kInPodm | kOnRanks,  ///< the program alone writes files
 };
 
-struct Declaration {
-  const char* name;       ///< "leaf-size": --leaf-size, and leaf_size in Python and in experiments
-  const char* type = "";  ///< of the value, as help shows it: "MM"; empty for flags and choices
-  OptionGroup group;
-  const char* help;              ///< with units, without the default; lines end with \n
+/// Details that few options need.
+struct OptionDetails {
   const char* unset = "";        ///< what the default 0, false or no text means
   const char* record = nullptr;  ///< its key in the record's `options`; null: the name, with _ for -
   unsigned uses = kInAll;
@@ -51,6 +48,13 @@ struct Declaration {
   const char* keyword = nullptr;         ///< in Python; null: the name, with _ for -
   const char* short_name = nullptr;      ///< "-o"
   bool is_required = false;
+};
+
+struct Declaration : OptionDetails {
+  const char* name;  ///< "leaf-size": --leaf-size, and leaf_size in Python and in experiments
+  const char* type;  ///< of the value, as help shows it: "MM"; empty for flags and choices
+  OptionGroup group;
+  const char* help;  ///< with units, without the default; lines end with \n
 };
 
 /// True if a real number is in the range of its option.
@@ -80,8 +84,10 @@ struct NestedOptions {
 };
 
 template <class Struct, class Value>
-constexpr Option<Struct, Value> option(Value Struct::*member, const Declaration& declaration) {
-  return {declaration, member};
+constexpr Option<Struct, Value> option(Value Struct::*member, const char* name, const char* type,
+                                       OptionGroup group, const char* help,
+                                       const OptionDetails& details = {}) {
+  return {{details, name, type, group, help}, member};
 }
 
 template <class Struct, class Inner>

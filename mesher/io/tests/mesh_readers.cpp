@@ -1,5 +1,6 @@
 #include "io/tests/mesh_readers.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>

@@ -3,6 +3,7 @@
 
 #include "algorithms/tests/failing_allocator.h"
 #include "delaunay/tests/cells_by_points.h"
+#include "delaunay/tests/validity.h"
 #include "optimize/tests/optimized_mesh.h"
 
 namespace podm::test {

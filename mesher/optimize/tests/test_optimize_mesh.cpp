@@ -1,5 +1,6 @@
 // An optimised mesh keeps its properties and its cells are better, for any number of workers, and wherever
 // they stop.
+#include "delaunay/tests/validity.h"
 #include "optimize/optimize_mesh.h"
 
 #include <gtest/gtest.h>

@@ -9,6 +9,7 @@
 
 #include "algorithms/tests/in_own_process.h"
 #include "delaunay/planted_fault.h"
+#include "delaunay/tests/validity.h"
 #include "optimize/tests/optimized_mesh.h"
 
 namespace podm::test {

@@ -1,5 +1,5 @@
 // Bounds of the invariants: an operation that the rules allow keeps them, one slightly beyond does not.
-#include "refine/invariants.h"
+#include "refine/tests/invariants.h"
 
 #include <gtest/gtest.h>
 

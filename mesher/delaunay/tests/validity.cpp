@@ -2,10 +2,10 @@
 // vertices. is_valid() also requires that every sphere passes through its vertices and every interior facet
 // is locally Delaunay. A triangulation that is locally Delaunay everywhere is globally Delaunay (Delaunay's
 // lemma).
-#include <algorithm>
-#include <string>
+#include "delaunay/tests/validity.h"
 
-#include "delaunay/mesh.h"
+#include <algorithm>
+
 #include "geometry/predicates.h"
 
 namespace podm {

@@ -1,4 +1,4 @@
-#include "refine/invariants.h"
+#include "refine/tests/invariants.h"
 
 #include <algorithm>
 
