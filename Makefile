@@ -4,7 +4,7 @@ MARCH = $(if $(NATIVE),native,x86-64-v3)
 CMAKE_FLAGS ?=
 CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) -DPODM_UNITE=ON $(CMAKE_FLAGS)
 FIGURES = results/runs/figures
-INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
+INPUTS = --records results/runs results/submissions --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
   --experiment-verdicts $(FIGURES)/experiment_verdicts.json
 TIER ?= default
@@ -12,7 +12,8 @@ PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build install python peers test stress kill-matrix audit docs kick-tires experiments figures clean
+.PHONY: help setup build install python peers test stress kill-matrix audit docs kick-tires experiments figures corpus \
+  clean
 
 help:
 	@echo "make kick-tires    run every experiment at its smallest size, in a few minutes; tables and results/runs/"
@@ -26,6 +27,9 @@ help:
 	@echo "make docs          the documentation as a site that needs no network: build/docs/site/index.html"
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a cut through a mesh: $(FIGURES)/,"
 	@echo "                   and one page with all of them: results/runs/report.html"
+	@echo "make corpus        mesh every label image in FOLDER=... (phantoms without it) unattended, in three settings: the"
+	@echo "                   rate of success, the reasons of failures, and the cost in results/runs/corpus.html; a second"
+	@echo "                   call continues"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make python        the Python package podm, in build/python/"
 	@echo "make install       the programs, their scripts and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: under it)"
@@ -113,6 +117,12 @@ figures: build
 	build/bin/podm-bench verdicts --json $(FIGURES)/experiment_verdicts.json experiments/*.toml > /dev/null
 	scripts/make_figures $(INPUTS) -o $(FIGURES)
 	scripts/report $(INPUTS) -o results/runs/report.html
+
+# An image without a mesh is a result: podm-bench exits with 1, and the page follows.
+corpus: build
+	@scripts/setup run
+	build/bin/podm-bench run experiments/corpus.toml $(if $(FOLDER),--image "$(FOLDER)") || test $$? = 1
+	scripts/report --records results/runs/corpus.jsonl -o results/runs/corpus.html
 
 clean:
 	rm -rf build build-*

@@ -36,6 +36,8 @@ may_include() {
     harness/trials) echo harness/machine harness/rows harness/options harness/process harness/ground mesher/runtime ;;
     harness/experiments | harness/gate) echo harness/trials harness/machine harness/rows harness/options \
       harness/process harness/ground mesher/runtime ;;
+    harness/submissions) echo harness/experiments harness/trials harness/machine harness/rows harness/options \
+      harness/process harness/ground mesher/runtime ;;
     harness/*) echo "harness/* mesher/runtime" ;;  # the program, tests
     verifiers) ;;  # the verifiers know the mesher only by its files
   esac

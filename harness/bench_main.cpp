@@ -11,6 +11,7 @@
 #include "experiments/commands.h"
 #include "gate/gate_command.h"
 #include "machine/commands.h"
+#include "submissions/commands.h"
 
 namespace podm::bench {
 namespace {
@@ -19,7 +20,15 @@ std::string beside_this_program(const char* name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
-// Adds the command. Sets `exit_code` when the command was chosen and has ended.
+Programs default_programs() {
+  return {beside_this_program("podm"),
+          beside_this_program("podm-verify"),
+          PODM_PEERS,
+          beside_this_program("podm-bench"),
+          PODM_LIKWID_GROUPS,
+          PODM_SOLVER};
+}
+
 // Adds an option whose value help shows as `type`.
 template <class Value>
 CLI::Option* add_option(CLI::App& app, const char* name, const char* type, Value& value,
@@ -27,6 +36,15 @@ CLI::Option* add_option(CLI::App& app, const char* name, const char* type, Value
   return app.add_option(name, value, description)->option_text(type);
 }
 
+void add_programs(CLI::App& app, Programs& programs) {
+  add_option(app, "--podm", "FILE", programs.podm, "file of the mesher [default: podm beside this program]");
+  add_option(app, "--verifier", "FILE", programs.verifier,
+             "file of the verifier, or none [default: podm-verify beside this program]");
+  add_option(app, "--peers", "FOLDER", programs.peers,
+             "folder of other meshers [default: harness/peers of the sources]");
+}
+
+// Adds the command. Sets `exit_code` when the command was chosen and has ended.
 void add_run(CLI::App& program, int& exit_code) {
   struct State {
     RunCommand command;
@@ -35,20 +53,15 @@ void add_run(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   RunCommand& command = state->command;
-  command.programs = {beside_this_program("podm"),
-                      beside_this_program("podm-verify"),
-                      PODM_PEERS,
-                      beside_this_program("podm-bench"),
-                      PODM_LIKWID_GROUPS,
-                      PODM_SOLVER};
+  command.programs = default_programs();
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
   add_option(app, "EXPERIMENT", " ", command.experiment_paths, "files of experiments/")->required();
   add_option(app, "--only", "PATTERN", command.only,
              "run only trials of this name; * and ? match any [default: all]");
   add_option(app, "--tier", "kick-tires|default|full", state->tier,
              "run this tier: kick-tires, default or full [default: all]");
-  add_option(app, "--image", "FILE", command.images,
-             "a label image in place of all inputs; repeatable [default: the inputs]")
+  add_option(app, "--image", "FILE|FOLDER", command.images,
+             "a label image, or a folder of them, in place of all inputs; repeatable [default: the inputs]")
       ->allow_extra_args(false);
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
@@ -57,12 +70,7 @@ void add_run(CLI::App& program, int& exit_code) {
              fmt::format("draws the order within each round [default: {}]", command.order_seed));
   add_option(app, "--results", "FOLDER", command.results_folder,
              fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
-  add_option(app, "--podm", "FILE", command.programs.podm,
-             "file of the mesher [default: podm beside this program]");
-  add_option(app, "--verifier", "FILE", command.programs.verifier,
-             "file of the verifier, or none [default: podm-verify beside this program]");
-  add_option(app, "--peers", "FOLDER", command.programs.peers,
-             "folder of other meshers [default: harness/peers of the sources]");
+  add_programs(app, command.programs);
   app.callback([state, &exit_code] {
     if (state->command.programs.verifier == "none") state->command.programs.verifier.clear();
     if (!state->tier.empty()) state->command.tier = parse_tier(state->tier);
@@ -71,7 +79,7 @@ void add_run(CLI::App& program, int& exit_code) {
 }
 
 void add_list(CLI::App& program, int& exit_code) {
-  const auto folder = std::make_shared<std::string>("experiments");
+  const auto folder = std::make_shared<std::string>(kExperimentsFolder);
   CLI::App& app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
   add_option(app, "FOLDER", " ", *folder, fmt::format("where they are [default: {}]", *folder));
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
@@ -178,6 +186,55 @@ void add_gate_simulation(CLI::App& program, int& exit_code) {
   app.callback([state, &exit_code] { exit_code = gate_simulation(state->num_tries, state->json_path); });
 }
 
+void add_pack(CLI::App& program, int& exit_code) {
+  const auto command = std::make_shared<PackCommand>();
+  command->results_folder = kResultsFolder;
+  command->experiments_folder = kExperimentsFolder;
+  CLI::App& app = *program.add_subcommand("pack", "pack rows, logs and hashes into an archive for others");
+  app.add_option("EXPERIMENT", command->experiments, "pack only the rows of these experiments [default: all]")
+      ->option_text(" ");
+  app.add_option("-o,--output", command->output, "the archive, .tar.gz")->option_text("FILE")->required();
+  app.add_option("--submitter", command->submitter, "your name, and your institution")
+      ->option_text("TEXT")
+      ->required();
+  app.add_option(
+         "--division", command->division,
+         "closed: inputs and bounds of the experiments; open: anything that you declare [default: closed]")
+      ->option_text("closed|open");
+  app.add_option("--declaration", command->declaration_path,
+                 "a text about how the rows were made; required for open [default: none]")
+      ->option_text("FILE");
+  app.add_option("--results", command->results_folder,
+                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
+      ->option_text("FOLDER");
+  app.add_option("--experiments", command->experiments_folder,
+                 fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder))
+      ->option_text("FOLDER");
+  app.callback([command, &exit_code] { exit_code = pack_submission(*command); });
+}
+
+void add_check(CLI::App& program, int& exit_code) {
+  const auto command = std::make_shared<CheckCommand>();
+  command->programs = default_programs();
+  command->experiments_folder = kExperimentsFolder;
+  CLI::App& app =
+      *program.add_subcommand("check", "judge a packed archive; exits with 1 when it is not valid");
+  app.add_option("ARCHIVE", command->archive, "an archive of podm-bench pack")->option_text(" ")->required();
+  app.add_option("--sample", command->num_meshes,
+                 fmt::format("meshes to make again on this machine [default: {}]", command->num_meshes))
+      ->option_text("N");
+  app.add_option("--sample-seed", command->seed, "draws these meshes [default: at random]")->option_text("N");
+  app.add_option("--image", command->images,
+                 "a label image, or a folder of them, that rows may have read; repeatable [default: none]")
+      ->option_text("FILE|FOLDER")
+      ->allow_extra_args(false);
+  app.add_option("--experiments", command->experiments_folder,
+                 fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder))
+      ->option_text("FOLDER");
+  add_programs(app, command->programs);
+  app.callback([command, &exit_code] { exit_code = check_submission(*command); });
+}
+
 int main_or_throw(int argc, char** argv) {
   CLI::App program("Runs mesher experiments, one process per trial, and records each as a JSON line.",
                    "podm-bench");
@@ -191,6 +248,8 @@ int main_or_throw(int argc, char** argv) {
   add_latency(program, exit_code);
   add_machine(program, exit_code);
   add_compare(program, exit_code);
+  add_pack(program, exit_code);
+  add_check(program, exit_code);
   add_gate(program, exit_code);
   add_gate_evidence(program, exit_code);
   add_gate_simulation(program, exit_code);

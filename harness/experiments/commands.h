@@ -13,13 +13,14 @@
 
 namespace podm::bench {
 
-inline constexpr const char* kResultsFolder = "results/runs";  ///< the default
+/// The default folders.
+inline constexpr const char *kResultsFolder = "results/runs", *kExperimentsFolder = "experiments";
 
 struct RunCommand {
   std::vector<std::string> experiment_paths;
   std::string only;                 ///< a shell pattern of trial names; empty: all
   std::optional<Tier> tier;         ///< trials of this tier and lower ones; unset: all
-  std::vector<std::string> images;  ///< replace all inputs; none: the inputs
+  std::vector<std::string> images;  ///< files and folders of files; replace all inputs; none: the inputs
   std::string results_folder = kResultsFolder;
   std::uint64_t order_seed = 1;
   Programs programs;

@@ -116,12 +116,12 @@ void grow(const TomlSection& section, bool is_given, Trial& trial) {
 
 // Reads the matrix of one [[trials]].
 std::vector<Trial> read_trials(TomlSection& section, const Inputs& inputs, const Trial& head,
-                               const std::string& folder, const std::vector<std::string>& images) {
+                               const MatrixContext& context, const std::vector<std::string>& images) {
   Trial common = head;
   common.name = read_name(section);
   read_run_settings(section, common);
   const std::vector<NamedInput> named_inputs = inputs_of_trials(section, inputs, images);
-  const std::vector<Variant> variants = read_matrix(section, folder);
+  const std::vector<Variant> variants = read_matrix(section, context);
   section.done();
   std::vector<Trial> trials;
   for (const auto& [suffix, input] : named_inputs)
@@ -163,7 +163,8 @@ std::size_t Experiment::num_turns() const {
   return turns;
 }
 
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) try {
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images,
+                           int processors) try {
   const TomlValue table = parse_toml(path);
   TomlSection file(table, "an experiment");
   const std::string folder = fs::path(path).parent_path().string();
@@ -180,7 +181,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   const Inputs inputs = read_inputs(file, folder);
   std::set<std::string> names;
   for (TomlSection& section : file.table_array("trials"))
-    for (Trial& trial : read_trials(section, inputs, head, folder, images)) {
+    for (Trial& trial : read_trials(section, inputs, head, {folder, processors}, images)) {
       if (!names.insert(trial.name).second)
         section.fail("name", fmt::format("a second trial '{}'", trial.name));
       experiment.trials.push_back(std::move(trial));

@@ -7,6 +7,7 @@
 #include "errors.h"
 #include "experiments/claim.h"
 #include "options/trial_settings.h"
+#include "process/usable_processors.h"
 
 namespace podm::bench {
 
@@ -25,8 +26,9 @@ struct Experiment {
 
 /// Throws InputError "file:line:column: fault" on anything that is not exactly the format. If there are
 /// `images`, they replace all inputs, and each is an input of its own; they are relative to the working
-/// folder.
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& images = {});
+/// folder. "all" stands for the number of processors.
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images = {},
+                           int processors = usable_processors());
 
 /// Returns the sorted paths of the *.toml files in a folder. Throws InputError when the folder cannot be
 /// read.

@@ -20,6 +20,7 @@
 #include "rows/results_file.h"
 #include "rows/table.h"
 #include "trials/record.h"
+#include "trials/trial_logs.h"
 
 namespace podm::bench {
 namespace {
@@ -181,7 +182,7 @@ class ExperimentRun {
       progress.finish_turn(label + ": already measured");
       return known->second;
     }
-    if (result.status == Status::kOk) result = run_in_scratch_folder(trial, planned.turn, result, progress);
+    if (result.status == Status::kOk) result = run_in_scratch_folder(planned.turn, key, result, progress);
     RowContext context{experiment_.name, key, session_.command.order_seed, 0, session_.programs, environment};
     context.harness_s =
         clock.lap_without(result.preparation_s + result.process.wall_s + result.verification_s);
@@ -228,13 +229,15 @@ class ExperimentRun {
   }
 
   // Removes the mesh before the row is written. The mesh then takes no disk time, and the row finds space.
-  TrialResult run_in_scratch_folder(const Trial& trial, const Turn& turn, const TrialResult& prepared,
+  TrialResult run_in_scratch_folder(const Turn& turn, const std::string& key, const TrialResult& prepared,
                                     Progress& progress) {
+    const Trial& trial = plan_.trials[turn.trial];
     progress.show_step("");
     const ScratchFolder scratch(session_.command.results_folder);
     TrialResult result =
         session_.runner.run(trial, prepared.preparation, scratch.path(), stop_query(progress));
     result.preparation_s += prepared.preparation_s;
+    if (result.status != Status::kSkipped) keep_logs(scratch.path(), session_.command.results_folder, key);
     if (session_.command.keep) keep(scratch, trial, turn);
     return result;
   }

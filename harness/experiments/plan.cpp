@@ -8,6 +8,7 @@
 #include <map>
 
 #include "experiments/claim_names.h"
+#include "experiments/image_folder.h"
 #include "options/option_matrix.h"
 
 namespace podm::bench {
@@ -46,10 +47,11 @@ std::size_t Plan::num_present() const {
 }
 
 std::vector<Experiment> read_experiments(const RunCommand& command) {
-  check_images(command.images);
+  const std::vector<std::string> images = with_images_of_folders(command.images);
+  check_images(images);
   std::vector<Experiment> experiments;
   for (const std::string& path : command.experiment_paths)
-    experiments.push_back(read_experiment(path, command.images));
+    experiments.push_back(read_experiment(path, images));
   check_claim_names(experiments);
   for (const Experiment& experiment : experiments)
     for (const Trial& trial : experiment.trials)

@@ -26,6 +26,14 @@ inline constexpr const char *kRanks = "ranks", *kCarrier = "carrier", *kMpi = "m
 /// The key of the target number of cells. The harness finds a radius for it once: radii.h.
 inline constexpr const char* kTargetElements = "target_elements";
 
+/// A length that a trial gives in voxels, because its images may have voxels of different sizes. The harness
+/// passes it to the mesher in millimetres: preparation.h.
+struct LengthInVoxels {
+  const char *key, *key_in_mm;
+};
+inline constexpr LengthInVoxels kLengthsInVoxels[] = {{"smooth_voxels", "smooth"},
+                                                      {"delta_voxels", "delta_mm"}};
+
 /// The key of a trial's source of counters: the kernel (the default), cachegrind, or likwid with a group of
 /// events.
 inline constexpr const char *kCounters = "counters", *kPerfEvent = "perf_event", *kCachegrind = "cachegrind",

@@ -13,7 +13,6 @@
 #include <limits>
 
 #include "errors.h"
-#include "process/usable_processors.h"
 
 namespace podm::bench {
 namespace {
@@ -58,8 +57,8 @@ constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,  kFidelity, kI
 constexpr std::array kSingleProcessOptions{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.
-constexpr std::array kCommonOptions{kMesher,    "radius_mm", "delta_mm", kTargetElements,
-                                    kPerThread, "threads",   kSolve};
+constexpr std::array kCommonOptions{kMesher,         "radius_mm", "delta_mm", "delta_voxels",
+                                    kTargetElements, kPerThread,  "threads",  kSolve};
 
 template <class Keys>
 bool is_among(const Keys& keys, std::string_view key) {
@@ -107,6 +106,7 @@ const std::vector<MesherOption>& mesher_options() {
       if (is_target) options.push_back({kPerThread, Kind::kCount, kMaxElements});
       if (is_target) options.push_back({kPerRank, Kind::kCount, kMaxElements});
     }
+    for (const LengthInVoxels& length : kLengthsInVoxels) options.push_back({length.key, Kind::kPositive});
     for (const char* key : {kSchedule, kReplay, kFidelity, kSolve, kImageGrows})
       options.push_back({key, Kind::kFlag});
     options.push_back({kCopies, Kind::kThreads});
@@ -122,9 +122,8 @@ const std::vector<MesherOption>& mesher_options() {
 
 // Returns the counts that a value stands for: "all" is the number of usable processors; "1..all" is the
 // powers of two below that number, and the number.
-std::vector<Json> thread_counts(const TomlValue& value) {
+std::vector<Json> thread_counts(const TomlValue& value, std::int64_t all) {
   if (value.as<std::string>() == nullptr) return {value.count(1, kMaxThreads)};
-  const std::int64_t all = usable_processors();
   const std::string text = value.text();
   if (text == "all") return {all};
   if (text != kPowersOfTwo)
@@ -169,7 +168,8 @@ std::string network_value(const TomlValue& value) {
   return network;
 }
 
-std::vector<Json> read_value(const TomlValue& value, const MesherOption& option, const std::string& folder) {
+std::vector<Json> read_value(const TomlValue& value, const MesherOption& option,
+                             const MatrixContext& context) {
   switch (option.kind) {
     case Kind::kPositive:
       return {value.positive()};
@@ -184,7 +184,7 @@ std::vector<Json> read_value(const TomlValue& value, const MesherOption& option,
     case Kind::kFlag:
       return {value.flag()};
     case Kind::kFile:
-      return {(std::filesystem::path(folder) / value.text()).lexically_normal().string()};
+      return {(std::filesystem::path(context.folder) / value.text()).lexically_normal().string()};
     case Kind::kCounters:
       return {counters_value(value)};
     case Kind::kMeasure:
@@ -196,7 +196,7 @@ std::vector<Json> read_value(const TomlValue& value, const MesherOption& option,
     case Kind::kThreads:
       break;
   }
-  return thread_counts(value);
+  return thread_counts(value, context.processors);
 }
 
 void multiply(std::vector<Variant>& variants, const std::string& key, const std::vector<Json>& values,
@@ -212,12 +212,33 @@ void multiply(std::vector<Variant>& variants, const std::string& key, const std:
 }
 
 // Returns the values of an option, each once: on two processors [1, 2, "all"] gives 1, 2.
-std::vector<Json> read_values(TomlSection& section, const MesherOption& option, const std::string& folder) {
+std::vector<Json> read_values(TomlSection& section, const MesherOption& option,
+                              const MatrixContext& context) {
   std::vector<Json> values;
   for (const TomlValue& given : section.values(option.key))
-    for (Json& value : read_value(given, option, folder))
+    for (Json& value : read_value(given, option, context))
       if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(std::move(value));
   return values;
+}
+
+// A text must not look like another option.
+bool has_type_of(Kind kind, const Json& value) {
+  const bool is_word =
+      value.is_string() && !value.get<std::string>().starts_with('-') && in_name(value) == value;
+  switch (kind) {
+    case Kind::kPositive:
+      return value.is_number() && value > 0;
+    case Kind::kCount:
+    case Kind::kSeed:
+    case Kind::kThreads:
+      return value.is_number_unsigned();
+    case Kind::kFlag:
+      return value.is_boolean();
+    case Kind::kSwitch:
+      return value.is_boolean() || value.is_number_unsigned() || is_word;
+    default:
+      return is_word;
+  }
 }
 
 void refuse_second_size(const TomlSection& section) {
@@ -226,6 +247,15 @@ void refuse_second_size(const TomlSection& section) {
     if (section.has(key)) given.push_back(key);
   if (given.size() > 1)
     section.fail(given.back(), fmt::format("{} exclude each other", fmt::join(given, " and ")));
+}
+
+void refuse_second_length(const TomlSection& section) {
+  for (const auto& [key, key_in_mm] : kLengthsInVoxels)
+    if (section.has(key) && section.has(key_in_mm))
+      section.fail(key, fmt::format("{} and {} exclude each other", key_in_mm, key));
+  for (const char* target : {kTargetElements, kPerThread, kPerRank})  // its radius comes with a delta
+    if (section.has("delta_voxels") && section.has(target))
+      section.fail("delta_voxels", fmt::format("{} and delta_voxels exclude each other", target));
 }
 
 void refuse_options_of_podm(const TomlSection& section, const Json& options) {
@@ -286,11 +316,12 @@ std::string in_name(const Json& value) {
   return text;
 }
 
-std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder) {
+std::vector<Variant> read_matrix(TomlSection& section, const MatrixContext& context) {
   refuse_second_size(section);
+  refuse_second_length(section);
   std::vector<Variant> variants{{"", {{"threads", 1}}}};
   for (const MesherOption& option : mesher_options()) {
-    const std::vector<Json> values = read_values(section, option, folder);
+    const std::vector<Json> values = read_values(section, option, context);
     const bool in_suffix = section.is_array(option.key) || section.is_text(option.key, kPowersOfTwo);
     if (!values.empty()) multiply(variants, option.key, values, in_suffix);
   }
@@ -303,6 +334,18 @@ std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder
     scale_by(kPerRank, kRanks, section, variant.options);
   }
   return variants;
+}
+
+std::string fault_of_options(const Json& options) {
+  if (!options.is_object()) return "not an object";
+  const std::vector<MesherOption>& known = mesher_options();
+  for (const auto& [key, value] : options.items()) {
+    const auto option = std::ranges::find(known, key, &MesherOption::key);
+    if (option == known.end()) return fmt::format("'{}' is no option of a trial", key);
+    if (option->kind == Kind::kFile) return fmt::format("'{}' names a file", key);
+    if (!has_type_of(option->kind, value)) return fmt::format("'{}' has a value of another type", key);
+  }
+  return "";
 }
 
 std::vector<std::string> mesher_arguments(const Json& options) {

@@ -74,11 +74,12 @@ class BenchTest : public testing::Test {
     std::sort(trials.begin(), trials.end());
     return trials;
   }
-  // True if only rows, inputs, lock and topology are left.
+  // True if only rows, logs, inputs, lock and topology are left.
   bool is_tidy() {
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "results")) {
       const std::string name = entry.path().filename();
-      if (name != "exp.jsonl" && name != "inputs" && name != ".lock" && !name.starts_with("topology-"))
+      if (name != "exp.jsonl" && name != "inputs" && name != ".lock" && name != "logs" &&
+          !name.starts_with("topology-"))
         return false;
     }
     return true;

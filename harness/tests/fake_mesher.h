@@ -47,14 +47,15 @@ inline const std::string kGoodRecord =
 /// The preparation of a trial whose image is a file and whose radius is given.
 inline Preparation prepared(const Trial& trial) { return {trial.image, "00", {}}; }
 
-/// A script for `podm`. It answers --version, and `info` with 10 x 10 x 10 voxels. `phantom` writes its name
-/// and size and notes them in the file "drawn". `replay` of a log runs the file "replay". `mesh` notes its
-/// arguments in "arguments" and runs `mesh_body`, where $record is the file of --record and $output the file
-/// of -o.
+/// A script for `podm`. It answers --version, and `info` with 10 x 10 x 10 voxels of 8 mm^3, unless the
+/// image's name contains "refused". `phantom` writes its name and size and notes them in the file "drawn".
+/// `replay` of a log runs the file "replay". `mesh` notes its arguments in "arguments" and runs `mesh_body`,
+/// where $record is the file of --record and $output the file of -o.
 inline std::string fake_mesher(const TemporaryFolder& folder, const std::string& mesh_body) {
   return folder.script("podm", R"(
 [ "$1" = --version ] && { echo 'podm 9.9'; exit 0; }
-[ "$1" = info ] && { echo '{"size":[10,10,10]}'; exit 0; }
+[ "$1" = info ] && case $2 in *refused*) echo refused >&2; exit 2;; esac
+[ "$1" = info ] && { echo '{"size":[10,10,10],"voxel_volume_mm3":8}'; exit 0; }
 [ "$1" = phantom ] && { echo "$2 $4" > "$6"; echo "$2 $4" >> "$(dirname "$0")/drawn"; exit 0; }
 [ "$1" = replay ] && { [ -e "$3" ] || exit 9; . "$(dirname "$0")/replay"; exit; }
 echo "$@" > "$(dirname "$0")/arguments"

@@ -149,6 +149,41 @@ TEST_F(BenchTest, SeveralImagesAreInputsOfTheirOwn) {
   EXPECT_TRUE(has_printed("err", "have the same name")) << printed("err");
 }
 
+TEST_F(BenchTest, AFolderStandsForTheLabelImagesInIt) {
+  std::filesystem::create_directories(folder_ / "mine/below.nii");
+  for (const char* name : {"b.nrrd", "a.nii.gz", "README.md", "data.raw"})
+    folder_.write(std::string("mine/") + name, "x");
+  EXPECT_EQ(run_with(good_mesh_, {"--only", "one*", "--image", folder_ / "mine"}), 0) << printed("err");
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one,input=a.nii.gz", "one,input=b.nrrd"}));
+  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_EQ(run_with(good_mesh_, {"--image", folder_ / "empty"}), 2);
+  EXPECT_TRUE(has_printed("err", "empty: no label image in this folder")) << printed("err");
+}
+
+TEST_F(BenchTest, AnImageThatIsRefusedHasARowWithItsReasonAndTheOthersRun) {
+  folder_.write("exp.toml", experiment_of(1, "phantom:torus", "smooth_voxels = 2\n" + kClaim));
+  const std::string good = folder_.write("good.nii", "x"), odd = folder_.write("refused.nii", "y");
+  EXPECT_EQ(run_with(good_mesh_, {"--image", odd, "--image", good}), 1);
+  ASSERT_EQ(rows().size(), 2u);
+  for (const auto& row : rows()) {
+    const bool is_good = row.at("trial") == "some,input=good.nii";
+    EXPECT_EQ(row.at("status"), is_good ? "ok" : "failed");
+    EXPECT_EQ(row.at("process").at("exit_code"), is_good ? 0 : 2);
+    EXPECT_EQ(row.at("stderr_tail"), is_good ? "" : "refused\n");
+  }
+  EXPECT_EQ(run_with(good_mesh_, {"--image", good}), 0);
+  EXPECT_EQ(rows().size(), 3u) << "another trial's name";
+  EXPECT_EQ(run_with(good_mesh_, {"--image", good}), 0);
+  EXPECT_EQ(rows().size(), 3u) << "measured already";
+}
+
+TEST_F(BenchTest, LogsOfATrialAreKeptBesideItsRow) {
+  EXPECT_EQ(run_with("echo heard >&2\n" + good_mesh_, {"--only", "one"}), 0) << printed("err");
+  const std::string logs = folder_ / ("results/logs/" + rows().at(0).at("key").get<std::string>());
+  EXPECT_EQ(read_tail(logs + "/stderr.txt", 100), "heard\n");
+  EXPECT_EQ(read_tail(logs + "/record.jsonl", 10000), kGoodRecord + "\n");
+}
+
 TEST_F(BenchTest, ImageStandsForAllInputs) {
   EXPECT_EQ(run_with(good_mesh_, {"--image", folder_.write("mine.nii", "x")}), 0) << printed("err");
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "three", "two"}));

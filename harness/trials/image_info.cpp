@@ -10,14 +10,17 @@ constexpr double kTimeoutS = 120;  // unpacking an image of hundreds of MiB take
 // The part of `podm info --json` that is read.
 struct InfoRecord {
   ImageSize size;
-  static constexpr auto fields() { return PODM_FIELDS(InfoRecord, size); }
+  std::optional<double> voxel_volume_mm3;
+  static constexpr auto fields() { return PODM_FIELDS(InfoRecord, size, (voxel_volume_mm3)); }
 };
 
-std::optional<ImageSize> size_in(const std::string& info) {
+void read_info(const std::string& text, ImageInfo& info) {
   try {
-    return from_json<InfoRecord>(Json::parse(info, nullptr, false)).size;
+    const auto record = from_json<InfoRecord>(Json::parse(text, nullptr, false));
+    info.size = record.size;
+    info.voxel_volume_mm3 = record.voxel_volume_mm3;
   } catch (const FieldError&) {
-    return {};
+    // Both stay unset.
   }
 }
 
@@ -27,7 +30,7 @@ ImageInfo ask_for_info(const std::string& podm, const std::string& image, const 
   ImageInfo info;
   info.command = {podm, "info", image, "--json"};
   info.reply = ask(info.command, kTimeoutS, stop_requested);
-  if (info.reply.succeeded()) info.size = size_in(info.reply.text);
+  if (info.reply.succeeded()) read_info(info.reply.text, info);
   return info;
 }
 

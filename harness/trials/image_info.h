@@ -1,4 +1,4 @@
-// The size of an image, from `podm info`.
+// The size of an image and of its voxels, from `podm info`.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,8 @@ namespace podm::bench {
 struct ImageInfo {
   std::vector<std::string> command;  ///< the command that was run
   Reply reply;
-  std::optional<ImageSize> size;  ///< unset if the mesher cannot read the image
+  std::optional<ImageSize> size;           ///< unset if the mesher cannot read the image
+  std::optional<double> voxel_volume_mm3;  ///< unset likewise
 };
 
 /// Asks the mesher about an image, a file or phantom:NAME[@SIZE].

@@ -19,9 +19,13 @@ struct Preparation {
   std::string image;                       ///< the file that is read
   std::string sha256;                      ///< hash of its bytes; "absent" where there is no file
   std::optional<ResolvedRadius> resolved;  ///< if the trial gives a target number of cells
+  std::optional<double> voxel_mm = {};     ///< edge of the cube of a voxel's volume, if the trial needs it
 };
 
-/// The trial's options, with radius and delta in place of the target number of cells.
+/// The options with radius and delta, if they were found, in place of the target number of cells.
+Json with_radius(Json options, const std::optional<ResolvedRadius>& resolved);
+
+/// The trial's options as the mesher takes them: with_radius(), and lengths in voxels in millimetres.
 Json resolved_options(const Trial& trial, const Preparation& preparation);
 
 /// Makes missing inputs, once for all trials.
@@ -43,9 +47,13 @@ class Preparer {
   Preparation make_anew(const Trial& trial, const std::string& scratch_folder, const Announce& announce,
                         const StopQuery& stop_requested);
 
+  void measure_voxel(const std::string& path, const StopQuery& stop_requested);
+
+  std::string podm_;
   InputFiles inputs_;
   Radii radii_;
   FileHashes hashes_;
+  std::map<std::string, double> voxels_mm_;           // each image is read once
   std::map<std::string, PreparationError> failures_;  // a failed input is not retried in each repeat
 };
 

@@ -25,7 +25,6 @@ namespace {
 
 constexpr std::size_t kTailBytes = 2000;
 constexpr const char *kMeshName = "/mesh.vtu", *kIndexName = "/mesh.pvtu";
-constexpr const char* kMessagesName = "/stderr.txt";
 
 std::string mesh_name(const Trial& trial) { return num_ranks(trial) > 0 ? kIndexName : kMeshName; }
 

@@ -26,6 +26,9 @@ struct TrialResult : TrialOutcome {
   std::optional<ImageSize> image_size;     ///< unset if the mesher reports no size
 };
 
+/// The mesher's messages in the folder of a trial.
+inline constexpr const char* kMessagesName = "/stderr.txt";
+
 /// Runs trials one after the other.
 class TrialRunner {
  public:

@@ -48,14 +48,24 @@ struct VerifierReport {
   static constexpr auto fields() { return PODM_FIELDS(VerifierReport, claims); }
 };
 
-// Returns nothing if there is no complete report.
-std::optional<VerifierReport> read_report(const std::string& path) {
+// Returns nothing if it is not a complete report.
+std::optional<VerifierReport> report_of(const Json& json) {
   try {
-    std::ifstream file(path);
-    return from_json<VerifierReport>(Json::parse(file, nullptr, false));
+    return from_json<VerifierReport>(json);
   } catch (const FieldError&) {
     return {};
   }
+}
+
+std::optional<VerifierReport> read_report(const std::string& path) {
+  std::ifstream file(path);
+  return report_of(Json::parse(file, nullptr, false));
+}
+
+ByName<Proof> verdicts_of(const VerifierReport& report) {
+  ByName<Proof> verdicts;
+  for (const auto& [claim, result] : report.claims) verdicts[claim] = result.verdict;
+  return verdicts;
 }
 
 // Returns the angles of any claim that examines the cells' shapes. All such claims count alike.
@@ -107,13 +117,18 @@ std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
 
 }  // namespace
 
+std::optional<ByName<Proof>> verdicts_of_report(const Json& json) {
+  const auto report = report_of(json);
+  return report ? std::optional(verdicts_of(*report)) : std::nullopt;
+}
+
 // A proof may take longer than the mesh, and the proof of a large mesh as long as the mesh may take.
 double timeout_of_proof_s(const Trial& trial) { return std::max(600.0, trial.timeout_s); }
 
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested) {
-  const std::string report_path = folder + "/verification.json";
+  const std::string report_path = folder + kReportName;
   std::vector<std::string> command{verifier, mesh_path, "--image", image, "--json", report_path, "--quiet"};
   const auto add = [&command](const std::string& option, const std::string& value) {
     command.insert(command.end(), {option, value});
@@ -130,7 +145,7 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
     verification.fault = "not verified: " + outcome.describe();
     return verification;
   }
-  for (const auto& [claim, result] : report->claims) verification.verdicts[claim] = result.verdict;
+  verification.verdicts = verdicts_of(*report);
   verification.dihedral_deg = dihedral_angles_of(*report);
   verification.topology = topology_of(*report);
   verification.fault = fault_of(verification.verdicts, record);

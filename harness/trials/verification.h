@@ -9,7 +9,8 @@
 
 namespace podm::bench {
 
-inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< its file in the folder of a trial
+/// The schedule of leaves and the verifier's report in the folder of a trial.
+inline constexpr const char *kScheduleName = "/schedule.jsonl", *kReportName = "/verification.json";
 
 struct Verification {
   ByName<Proof> verdicts;  ///< one per claim; empty if the verifier reports nothing
@@ -18,6 +19,9 @@ struct Verification {
   std::string fault;  ///< the reason why the mesh is not proved; empty: all promised claims pass
   bool is_interrupted = false;
 };
+
+/// Returns the verdicts of a report of podm-verify; nothing if it is not a complete report.
+std::optional<ByName<Proof>> verdicts_of_report(const Json& report);
 
 /// The time limit of a program that checks the trial's mesh.
 double timeout_of_proof_s(const Trial& trial);

@@ -34,8 +34,8 @@ def parse_arguments(arguments):
 
 def add_inputs(parser):
     parser.add_argument("--records", type=Path, nargs="+", default=[Path("results/runs")], metavar="PATH",
-                        help="JSON-lines files, or folders of them, such as one of results/reference (default: "
-                             "results/runs)")
+                        help="JSON-lines files, archives of podm-bench pack, or folders of both, such as one of "
+                             "results/reference (default: results/runs)")
     parser.add_argument("--experiment-verdicts", type=Path, metavar="JSON",
                         help="of `podm-bench verdicts --json`: the claims of our experiments")
     parser.add_argument("--verified", type=Path, metavar="JSON",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas
 
-from . import distributed, machine_state
+from . import distributed, machine_state, submitted
 
 SCHEMA = 4
 # A mesh is verified if these claims pass and no other claim fails. Other claims may lack an input, such as the image.
@@ -41,10 +41,12 @@ class Records:
 
 
 def load(paths):
-    """Reads rows from the JSON-lines files in `paths` (files, or folders with all files below). Raises RecordError."""
+    """Reads rows from the JSON-lines files and the archives of `podm-bench pack` in `paths` (files, or folders with all
+    files below). Raises RecordError."""
     rows, problems = [], []
     for path, is_named in _files(paths):
-        rows += _read_file(path, is_named, problems)
+        for name, text in _texts(path):
+            rows += _rows_of(name, text, is_named, problems)
     frame = pandas.json_normalize([{**row, **derived(row)} for row in _newest_of_each_turn(rows)], sep=".")
     return Records(frame.drop(columns=LONG_LISTS, errors="ignore"), problems)
 
@@ -192,7 +194,7 @@ def _files(paths):
     below it whose names begin with a dot are skipped."""
     for path in map(Path, paths):
         if path.is_dir():
-            inside = sorted(path.rglob("*.jsonl"))
+            inside = sorted([*path.rglob("*.jsonl"), *path.rglob("*" + submitted.ENDING)])
             yield from ((one, False) for one in inside
                         if not any(part.startswith(".") for part in one.relative_to(path).parts))
         elif path.is_file():
@@ -201,8 +203,19 @@ def _files(paths):
             raise RecordError(f"{path}: no such file or folder; `make experiments` writes records")
 
 
-def _read_file(path, is_named, problems):
-    lines = path.read_text(errors="replace").splitlines()
+def _texts(path):
+    """Yields the name and the text of a file, or those of an archive's files of rows."""
+    if not path.name.endswith(submitted.ENDING):
+        yield path, path.read_text(errors="replace")
+        return
+    try:
+        yield from submitted.texts_of(path)
+    except submitted.ArchiveError as error:
+        raise RecordError(str(error)) from None
+
+
+def _rows_of(path, text, is_named, problems):
+    lines = text.splitlines()
     rows = []
     for number, line in enumerate(lines, start=1):
         if not line.strip():

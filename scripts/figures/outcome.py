@@ -3,9 +3,10 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (ablation, cache, deviation, dihedral, distributed, distributed_figure, distributed_model,
+from . import (ablation, cache, corpus, deviation, dihedral, distributed, distributed_figure, distributed_model,
                experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, paper_claims,
-               peers, scaling, simulated, simulated_sizes, solvers, table1, table2, table3, validation, verdicts)
+               pareto, peers, scaling, simulated, simulated_sizes, solvers, table1, table2, table3, validation,
+               verdicts)
 
 
 # Tables with times that this machine measured. They also state the machine's condition.
@@ -56,7 +57,8 @@ def _tables(frame, series, hops, ranks, nodes):
               "deviation": (deviation.deviation(series), deviation), "lost": (lost.lost(frame, series), lost),
               "validation": (validation.validation(frame), validation),
               "peers": (peers.peers(frame), peers), "solvers": (solvers.solvers(frame), solvers),
-              "cache": (cache.cache(frame), cache),
+              "cache": (cache.cache(frame), cache), "corpus": (corpus.corpus(frame), corpus),
+              "pareto": (pareto.fronts(pareto.pareto(frame)), pareto),
               "distributed": (ranks, distributed), "distributed_extrapolated": (nodes, distributed_model),
               "guarantees": (guarantees.ours(frame), guarantees),
               "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
@@ -83,6 +85,8 @@ def _figures(frame, series, distributed_tables, report, schedule, mesh):
         "distributed": distributed_figure.figure(*distributed_tables),
         "dihedral": dihedral.figure(frame),
         "solvers": solvers.figure(frame),
+        "corpus": corpus.figure(frame),
+        "pareto": pareto.figure(frame),
     }
     why = {"fig1": "no report of podm-verify and no verified row with its quality",
            "fig2b": "no two leaves of different nodes were active at one time" if schedule and mesh
@@ -91,7 +95,9 @@ def _figures(frame, series, distributed_tables, report, schedule, mesh):
            "lost": "no simulated rows of weak scaling record the losses of their workers (virtual.worker_s)",
            "distributed": "no verified rows on more than one rank (distributed_weak.toml)",
            "dihedral": "no verified rows without and with a stage against slivers (solvers.toml)",
-           "solvers": "no rows of meshes that were given to a solver (solvers.toml)"}
+           "solvers": "no rows of meshes that were given to a solver (solvers.toml)",
+           "corpus": "no rows of a corpus of images (make corpus)",
+           "pareto": "no two meshers or settings meshed one image on one machine"}
     missing = {name: why[name] for name, figure in drawn.items() if figure is None}
     return {name: figure for name, figure in drawn.items() if figure is not None}, missing
 

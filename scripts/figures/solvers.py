@@ -26,7 +26,7 @@ def rows_by_variant(frame, needed):
         return {}
     is_finished = (frame["status"] == "ok") | (frame["mesher"] != "podm") & (frame["status"] == "unmet")
     rows = frame[frame[needed].notna() & is_finished & ~frame["warmup"].astype(bool)]
-    rows = rows.assign(variant=[_variant_of(row) for _, row in rows.iterrows()])
+    rows = rows.assign(variant=[variant_of(row) for _, row in rows.iterrows()])
     found = {}
     for image, of_image in rows[rows["basis"] == "measured"].groupby("image", sort=True):
         groups = {}
@@ -84,7 +84,7 @@ def figure(frame):
     return made
 
 
-def _variant_of(row):
+def variant_of(row):
     if row["mesher"] != "podm":
         return PEERS.get(row["mesher"], row["mesher"])
     moves = pandas.notna(row.get("asked.min_dihedral"))

@@ -5,6 +5,7 @@ from figures import experiment_verdicts, peers, simulated_sizes
 from figures.outcome import MEASURED_TABLES, readable_experiments, readable_verdicts
 from figures.write import svg_of
 
+from .corpus_section import corpus_html
 from .first_screen import first_screen
 from .html import box, document, fold, remarks_html, responsive, section, table_html, text_of
 from .limits import limits
@@ -12,6 +13,7 @@ from .viewer import script, viewer_html
 
 DOI = "https://doi.org/10.1016/j.proeng.2015.10.119"
 SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", "figures": "Figures",
+            "corpus": "Corpus", "pareto": "Pareto fronts",
             "simulated": "Simulated machine", "mesh": "Mesh", "environment": "Environment"}
 FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig2b": "Figure 2 (b): two active leaves and their rings",
@@ -21,7 +23,9 @@ FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "lost": "Where the time of simulated cores goes",
                  "distributed": "Weak scaling on ranks that share no memory",
                 "dihedral": "Dihedral angles before and after the stages against slivers",
-                "solvers": "What meshes cost a solver: iterations of conjugate gradients"}
+                "solvers": "What meshes cost a solver: iterations of conjugate gradients",
+                "corpus": "Seconds over voxels, by setting",
+                "pareto": "Seconds against cells, and time per cell against the worst dihedral angle"}
 TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses by hops",
                 "table3": "Table 3: memory levels", "peers": "Beside other meshers",
                 "solvers": "Slivers and solvers: iterations of conjugate gradients",
@@ -56,12 +60,14 @@ MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells per core, fitted and no
                   "efficiency_and_hops": "Efficiencies and zero-hop shares, %",
                   "lost": "Worker microseconds per cell, by cause"}
 MACHINE_FIGURES = ("deviation", "lost")
+OWN_SECTIONS = (*MACHINE_FIGURES, "corpus", "pareto")  # their figures are not among the others
 
 
 def page(records, outcome, mesh=None, mesh_fault="No mesh was given."):
     """Returns the page. `mesh`: from viewer.pack; without it `mesh_fault` gives the reason."""
     parts = {"claims": _claims(outcome), "guarantees": _guarantees(outcome), "tables": _tables(outcome),
-             "figures": _figures(outcome, [name for name in FIGURE_TITLES if name not in MACHINE_FIGURES]),
+             "figures": _figures(outcome, [name for name in FIGURE_TITLES if name not in OWN_SECTIONS]),
+             "corpus": corpus_html(outcome, _figures(outcome, ["corpus"])), "pareto": _pareto(outcome),
              "simulated": _machine(outcome), "mesh": viewer_html(mesh, mesh_fault),
              "environment": _environment(records)}
     body = "\n".join(section(name, title, parts[name]) for name, title in SECTIONS.items())
@@ -156,6 +162,14 @@ def _machine(outcome):
     tables = [fold(title, table_html(outcome.tables[name][1], title) + notes.get(name, ""), name != "lost")
               for name, title in MACHINE_TABLES.items() if name in outcome.tables]
     return "\n".join([limits(), *tables, _figures(outcome, MACHINE_FIGURES)])
+
+
+def _pareto(outcome):
+    figure = _figures(outcome, ["pareto"])
+    if "pareto" not in outcome.tables:
+        return figure
+    title = "Meshes on a front"
+    return f"{figure}\n{fold(title, table_html(outcome.tables['pareto'][1], title), False)}"
 
 
 def _environment(records):

@@ -284,6 +284,13 @@ TEST_F(ExperimentTest, ImageGrowsWithTheThreads) {
             std::string::npos);
 }
 
+TEST_F(ExperimentTest, ALengthIsInVoxelsOrInMillimetres) {
+  EXPECT_NE(fault(kHead + kTrial + "smooth = 2\nsmooth_voxels = 2\n").find("exclude each other"),
+            std::string::npos);
+  EXPECT_NE(fault(kHead + kTrial + "target_elements = 9\ndelta_voxels = 2\n").find("exclude each other"),
+            std::string::npos);
+}
+
 TEST_F(ExperimentTest, CopiesAreOfOneThread) {
   const auto trials = read(kHead + kTrial + "copies = [1, 'all']\n").trials;
   EXPECT_EQ(trials.front().name, "one,copies=1");

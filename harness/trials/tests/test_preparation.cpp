@@ -83,6 +83,33 @@ TEST_F(PreparationTest, FileIsReadWhereItIs) {
   EXPECT_EQ(any.find(some_trial(folder_ / "absent.nii", {}))->sha256, "absent") << "its mesher says so";
 }
 
+TEST_F(PreparationTest, LengthsInVoxelsAreMillimetresOfTheImage) {
+  const Trial trial = some_trial(folder_.write("image.nii", "voxels"),
+                                 {{"threads", 1}, {"smooth_voxels", 1.5}, {"delta_voxels", 2}});
+  Preparer any = preparer();
+  EXPECT_EQ(any.find(trial), std::nullopt) << "its voxels are not known yet";
+  const Preparation made = make(any, trial);
+  EXPECT_EQ(made.voxel_mm, 2.0);
+  EXPECT_EQ(resolved_options(trial, made), Json({{"threads", 1}, {"smooth", 3.0}, {"delta_mm", 4.0}}));
+  ASSERT_TRUE(any.find(trial).has_value());
+  EXPECT_EQ(any.find(trial)->voxel_mm, 2.0);
+  EXPECT_EQ(resolved_options(some_trial(trial.image, {{"threads", 1}}), *any.find(trial)),
+            Json({{"threads", 1}}));
+}
+
+TEST_F(PreparationTest, LengthsInVoxelsOfAnImageThatIsRefusedAreNoTrial) {
+  const Trial trial =
+      some_trial(folder_.write("refused.nii", "voxels"), {{"threads", 1}, {"smooth_voxels", 1}});
+  Preparer any = preparer();
+  try {
+    make(any, trial);
+    FAIL() << "no exception";
+  } catch (const PreparationError& error) {
+    EXPECT_STREQ(error.what(), "the size of voxels is not known: exit code 2");
+    EXPECT_EQ(error.stderr_tail, "refused\n");
+  }
+}
+
 TEST_F(PreparationTest, RadiusIsFoundOnceOnAllProcessorsAndStoredWithItsEvidence) {
   const Trial trial = some_trial(folder_.write("image.nii", "voxels"), kTarget);
   Preparer first = preparer();
