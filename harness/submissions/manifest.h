@@ -24,7 +24,6 @@ struct Manifest {
   std::string podm_bench;     ///< version of the program that packed the files
   ByName<std::string> files;  ///< SHA-256 of each other file
   static constexpr auto fields() {
-    using M = Manifest;
     return PODM_FIELDS(Manifest, schema, division, submitter, declaration, date, podm_bench, files);
   }
 };

@@ -61,12 +61,18 @@ struct SurfaceFormat {
 
 const std::array<SurfaceFormat, 2> kSurfaceFormats{{{".stl", write_stl}, {".ply", write_ply}}};
 
-const SurfaceFormat& surface_format_of(const std::string& path) {
+// Returns null for another extension.
+const SurfaceFormat* find_surface_format(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const SurfaceFormat& format : kSurfaceFormats)
-    if (extension == format.extension) return format;
-  throw InputError(
-      fmt::format("cannot write {}: unknown surface extension '{}', expected .stl or .ply", path, extension));
+    if (extension == format.extension) return &format;
+  return nullptr;
+}
+
+const SurfaceFormat& surface_format_of(const std::string& path) {
+  if (const SurfaceFormat* format = find_surface_format(path)) return *format;
+  throw InputError(fmt::format("cannot write {}: unknown surface extension '{}', expected .stl or .ply", path,
+                               std::filesystem::path(path).extension().string()));
 }
 
 // Replaces every character except letters, digits, dots and dashes, because it may have a meaning for a file
@@ -106,6 +112,8 @@ void check_surface_path(const std::string& path) {
   surface_format_of(path);
   const AtomicFile trial(path);  // tests the folder; the surfaces have other names in it
 }
+
+bool is_surface_path(const std::string& path) { return find_surface_format(path) != nullptr; }
 
 void write_surfaces(const TetMesh& mesh, const std::string& path) {
   const SurfaceFormat& format = surface_format_of(path);

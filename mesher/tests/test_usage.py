@@ -14,17 +14,20 @@ OPTIONS = {
              "--max-elements", "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm",
              "--crossover", "--nodes", "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size",
              "--schedule", "--executor", "--virtual-cost", "--seed", "--log", "--begging", "--pin", "--oversubscribe",
-             "--topology", "--cost-factor", "--stats", "--verify", "--verify-fidelity", "--report", "--quiet",
+             "--topology", "--cost-factor", "--stats", "--verify", "--verify-fidelity", "--report", "--json-progress",
+             "--quiet",
              "--optimize", "--dihedral-bounds", "--gmsh-version"],
     "convert": ["--gmsh-version"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands"],
-    "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands", "--json", "--plan",
+    "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands", "--json", "--output",
+             "--plan",
              "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta", "--target-elements",
              "--target-tolerance", "--smooth", "--min-dihedral", "--optimize", "--dihedral-bounds", "--algorithm",
              "--threads", "--oversubscribe"],
     "phantom": ["--size", "--output"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
              "--background", "--no-legend"],
+    "serve": ["--port", "--no-browser", "--max-upload-mib", "--max-memory-gib", "--max-seconds"],
 }
 
 

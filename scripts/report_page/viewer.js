@@ -39,10 +39,15 @@ void main() {
   pixel = vec4(colour * light * (1.0 - 0.5 * edge), 1.0);
 }`;
 
-async function unpack(mesh) {
-  const packed = Uint8Array.from(atob(mesh.data), (letter) => letter.charCodeAt(0));
+async function inflate(data) {
+  const packed = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const bytes = await new Response(stream).arrayBuffer();
+  return new Response(stream).arrayBuffer();
+}
+
+// A mesh in a page has `data`; a mesh from a server has `bytes`.
+async function unpack(mesh) {
+  const bytes = mesh.bytes ?? await inflate(mesh.data);
   const cellsAt = 6 * mesh.points, labelsAt = cellsAt + 16 * mesh.cells;
   return {
     points: new Uint16Array(bytes, 0, 3 * mesh.points),
@@ -207,10 +212,13 @@ function list(place, labels, toggle) {
   }
 }
 
-const root = document.getElementById("viewer");
-if (root) {
-  show(root, JSON.parse(document.getElementById("mesh-data").textContent)).catch((error) => {
+// Shows a mesh in the elements of viewer.py's FRAME, or says why it cannot.
+async function showMesh(root, mesh) {
+  await show(root, mesh).catch((error) => {
     root.querySelector("[data-fault]").textContent = `The mesh cannot be drawn: ${error.message}`;
     root.querySelector("canvas").hidden = true;
   });
 }
+
+const packedMesh = document.getElementById("mesh-data");
+if (packedMesh) showMesh(document.getElementById("viewer"), JSON.parse(packedMesh.textContent));

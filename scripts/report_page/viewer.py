@@ -1,4 +1,5 @@
-"""Packs a mesh for viewer.js: zlib of points, cells and labels, in base64. Also makes the HTML around it."""
+"""Packs a mesh for viewer.js: points, cells and labels; in a page zlib of them, in base64. Also makes the HTML around
+it."""
 import base64
 import json
 import zlib
@@ -10,6 +11,20 @@ from views.colours import colours_of_labels
 
 MAX_CELLS = 200_000
 SCRIPT = Path(__file__).with_name("viewer.js")
+HELP = """cut open: those whose centres lie beyond the plane are left out. Drag to turn; wheel, two fingers, + and - zoom;
+arrow keys turn too."""
+# The elements that viewer.js fills.
+FRAME = """<div id="viewer">
+<canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>
+<form>
+<div class="line"><label for="axis">across</label><select id="axis" name="axis"><option value="0">x</option>
+<option value="1" selected>y</option><option value="2">z</option></select></div>
+<div class="line"><label for="cut">cut</label>
+<input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
+<fieldset><legend>labels</legend><div data-labels></div></fieldset>
+</form>
+<p data-fault role="status"></p>
+</div>"""
 
 
 class TooManyCells(Exception):
@@ -17,23 +32,29 @@ class TooManyCells(Exception):
 
 
 def pack(mesh):
-    """Returns the data for viewer.js. Points keep 16 bits per coordinate. Raises TooManyCells."""
+    """Returns the data for viewer.js. Raises TooManyCells."""
     if len(mesh.cells) > MAX_CELLS:
         raise TooManyCells(f"{len(mesh.cells):,} cells are more than a page can show; use a mesh of at most "
                            f"{MAX_CELLS:,}, for example from `podm mesh --target-elements 100000`")
+    description, data = parts_of(mesh, colours_of_labels(mesh))
+    return description | {"data": base64.b64encode(zlib.compress(data, 9)).decode()}
+
+
+def parts_of(mesh, colours):
+    """Returns the description of the mesh for viewer.js, and its bytes. Points keep 16 bits per coordinate. `colours`:
+    by label value."""
     used, cells = numpy.unique(mesh.cells, return_inverse=True)
     cells = _outward(mesh, cells.reshape(-1, 4))
     points, low, step_mm = _quantized(mesh.points[used])
     values, labels = numpy.unique(mesh.labels, return_inverse=True)
-    colours = colours_of_labels(mesh)
     parts = [points.astype("<u2"), cells.astype("<u4"), labels.astype("<u2")]
-    return {
+    description = {
         "points": len(points), "cells": len(cells), "low_mm": low.tolist(), "step_mm": step_mm,
         "size": points.max(axis=0).tolist(),
         "labels": [{"value": int(value), "name": mesh.name_of(value), "colour": colours[int(value)],
                     "cells": int(count)} for value, count in zip(values, numpy.bincount(labels))],
-        "data": base64.b64encode(zlib.compress(b"".join(part.tobytes() for part in parts), 9)).decode(),
     }
+    return description, b"".join(part.tobytes() for part in parts)
 
 
 def _quantized(points):
@@ -54,19 +75,8 @@ def viewer_html(packed, fault):
     if packed is None:
         return f'<p class="faint">{escape(fault)}</p>'
     data = json.dumps(packed).replace("<", "\\u003c")
-    return f"""<p>{packed["cells"]:,} cells, cut open: those whose centres lie beyond the plane are left out. Drag to
-turn; wheel, two fingers, + and - zoom; arrow keys turn too.</p>
-<div id="viewer">
-<canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>
-<form>
-<div class="line"><label for="axis">across</label><select id="axis" name="axis"><option value="0">x</option>
-<option value="1" selected>y</option><option value="2">z</option></select></div>
-<div class="line"><label for="cut">cut</label>
-<input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
-<fieldset><legend>labels</legend><div data-labels></div></fieldset>
-</form>
-<p data-fault role="status"></p>
-</div>
+    return f"""<p>{packed["cells"]:,} cells, {HELP}</p>
+{FRAME}
 <script type="application/json" id="mesh-data">{data}</script>"""
 
 

@@ -51,20 +51,48 @@ class Browser:
 
     def open(self, path, width, height=900, scheme="light"):
         """Loads a file on a screen of that width, and waits until it is drawn."""
+        self.go(path.resolve().as_uri(), width, height, scheme)
+        self.evaluate("new Promise(done => setTimeout(done, 1500))")  # the mesh is unpacked and drawn after the load
+
+    def go(self, address, width, height=900, scheme="light"):
+        """Loads an address on a screen of that width."""
         self.errors.clear()
         self._send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                    mobile=width < 600)
         self._send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-        self._send("Page.navigate", url=path.resolve().as_uri())
+        self._send("Page.navigate", url=address)
         self.evaluate("new Promise(done => "
                       "document.readyState === 'complete' ? done() : addEventListener('load', done))")
-        self.evaluate("new Promise(done => setTimeout(done, 1500))")  # the mesh is unpacked and drawn after the load
 
     def evaluate(self, expression):
         answer = self._send("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(answer["exceptionDetails"]["exception"].get("description"))
         return answer["result"].get("value")
+
+    def drop(self, selector, *paths):
+        """Drags files from outside and drops them on the first element that matches."""
+        x, y = self.evaluate(f"""(() => {{
+            const box = document.querySelector('{selector}').getBoundingClientRect();
+            return [box.x + box.width / 2, box.y + box.height / 2]; }})()""")
+        data = {"items": [], "files": list(map(str, paths)), "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self._send("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+
+    def choose(self, selector, *paths):
+        """Chooses files in the input that matches, as its dialogue does."""
+        root = self._send("DOM.getDocument")["root"]["nodeId"]
+        node = self._send("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+        self._send("DOM.setFileInputFiles", files=list(map(str, paths)), nodeId=node)
+
+    def press(self, key, code=0, text="", shift=False):
+        """Presses a key: "Tab", or a character as `text`."""
+        common = {"key": key, "code": key, "windowsVirtualKeyCode": code, "modifiers": 8 if shift else 0}
+        self._send("Input.dispatchKeyEvent", type="keyDown" if text else "rawKeyDown", text=text, **common)
+        self._send("Input.dispatchKeyEvent", type="keyUp", **common)
+
+    def save_downloads_in(self, folder):
+        self._send("Page.setDownloadBehavior", behavior="allow", downloadPath=str(folder))
 
     def screenshot(self, selector="html"):
         """Returns a PNG of the first element that matches; by default of the whole page."""

@@ -11,7 +11,11 @@ RAMP = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da
 
 def colours_of_labels(mesh):
     """Returns a colour per label value, by rank of volume."""
-    ranked = mesh.labels_by_volume()
+    return colours_by_rank(mesh.labels_by_volume())
+
+
+def colours_by_rank(ranked):
+    """Returns a colour per label value. `ranked`: the values, the greatest volume first."""
     if len(ranked) == 1:
         return {ranked[0]: PALETTE[0]}
     return {value: PALE if rank == 0 else _colour(rank - 1) for rank, value in enumerate(ranked)}

@@ -12,6 +12,7 @@ int run(const ConvertCommand& command);
 int run(const InfoCommand& command);
 int run(const PhantomCommand& command);
 int run(const ViewCommand& command);
+int run(const ServeCommand& command);
 int run(const ShowText& show);
 
 }  // namespace podm::cli

@@ -7,10 +7,12 @@
 #include "algorithms/team_size.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/labelled_image.h"
+#include "cli/processes/signal_thread.h"
 #include "cli/reports/json_text.h"
 #include "cli/reports/plan.h"
 #include "cli/reports/standard_output.h"
 #include "image/foreground.h"
+#include "podm/image_io.h"
 
 namespace podm::cli {
 namespace {
@@ -72,11 +74,13 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
 }  // namespace
 
 int run(const InfoCommand& command) {
+  const SignalThread signals;  // leaves no partial image behind
   const int threads = loop_threads(command.planned.meshing.team);
   const WorkTimer timer(threads);
   const LabelImage image = read_labelled_image(command.image, threads);
   const double read_s = timer.seconds();
   for (const std::string& warning : image.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!command.output_path.empty()) write_nifti(image, command.output_path);
   std::optional<Plan> plan;
   if (command.plan) {
     MeshCommand planned = command.planned;

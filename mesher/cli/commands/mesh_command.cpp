@@ -49,12 +49,14 @@ void check_outputs(const MeshCommand& command, const SignalThread& signals) {
 }
 
 // From the start of refinement on there is a mesh to keep, so the first signal only requests a stop.
-MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet,
-                                SignalThread& signals) {
+MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options,
+                                const MeshCommand& command, SignalThread& signals) {
   using Style = ProgressDisplay::Style;
-  ProgressDisplay display(stderr, quiet ? Style::kNone : ProgressDisplay::style_for(stderr));
+  ProgressDisplay display = command.json_progress ? ProgressDisplay(stdout, Style::kJson)
+                            : command.quiet       ? ProgressDisplay(stderr, Style::kNone)
+                                            : ProgressDisplay(stderr, ProgressDisplay::style_for(stderr));
   const auto progress = [&](const Progress& now) {
-    if (now.phase != "transform") signals.stop_on_first_signal(quiet);
+    if (now.phase != "transform") signals.stop_on_first_signal(command.quiet);
     display.show(now);
   };
   return mesh_image(image, options, progress, signals.token());
@@ -101,7 +103,7 @@ int run(const MeshCommand& command) {
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.leaves.with_schedule = !command.schedule_path.empty();
-  MeshingResult result = mesh_with_display(image, run.options, command.quiet, signals);
+  MeshingResult result = mesh_with_display(image, run.options, command, signals);
   run.take(std::move(result.report), result.mesh);
   run.write_s = timed([&] {
     const int threads = loop_threads(command.meshing.team);

@@ -41,6 +41,10 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   CLI::App& app = add_command(program, "info", "print size, spacing (mm), affine and labels of an image");
   add_image_options(app, command.image);
   add_flag(app, "--json", command.json, "print one JSON object [default: text]");
+  add_one(app, "-o,--output", "FILE",
+          "also write the image that podm mesh would see, with its labels selected: NIfTI,\n"
+          ".nii or .nii.gz [default: none]",
+          into(command.output_path));
   CLI::Option* plan =
       add_flag(app, "--plan", command.plan,
                "also predict what podm mesh costs and loses with the options below: cells by\n"

@@ -1,5 +1,5 @@
 // The commands whose options are declared beside their members (podm/option.h): podm mesh, podm info --plan,
-// podm convert.
+// podm convert, podm serve.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -136,10 +136,20 @@ void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan)
     need_in_group(app, title_of(group), plan);
 }
 
+void add_serve_command(CLI::App& program, ServeCommand& command) {
+  CLI::App& app = add_command(program, "serve", "mesh an image in a browser, on this machine alone");
+  add_declared_options(app, command, kInPodm, "Options");
+  end_help(app,
+           "The address that it prints holds a secret: who has it uses the page. Ctrl-C ends the server and\n"
+           "removes all images and meshes of the page.");
+}
+
 void add_convert_command(CLI::App& program, ConvertCommand& command) {
   CLI::App& app = add_command(program, "convert", "convert a mesh file of any program to another format");
   require(add_one(app, "IN", "", "mesh file that podm-verify reads", into(command.input_path)));
-  require(add_one(app, "OUT", "", "mesh file, with an extension that podm mesh -o accepts",
+  require(add_one(app, "OUT", "",
+                  "mesh file, with an extension that podm mesh -o accepts; or .stl or .ply, for the\n"
+                  "closed surface of each label",
                   into(command.output_path)));
   add_mesh_file_options(app, command.mesh_file);
   end_help(app,

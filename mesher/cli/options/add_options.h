@@ -60,6 +60,7 @@ void add_options_command(CLI::App& program);
 void add_convert_command(CLI::App& program, ConvertCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);
+void add_serve_command(CLI::App& program, ServeCommand& command);
 void add_view_command(CLI::App& program, ViewCommand& command);
 
 }  // namespace podm::cli

@@ -125,6 +125,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   InfoCommand info;
   PhantomCommand phantom;
   ViewCommand view;
+  ServeCommand serve;
   const std::string name = which == Program::kPodmMpi ? "podm-mpi" : "podm";
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
@@ -143,6 +144,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
     add_info_command(program, info);
     add_phantom_command(program, phantom);
     add_view_command(program, view);
+    add_serve_command(program, serve);
     add_options_command(program);
   }
   try {
@@ -165,6 +167,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   if (chosen == "convert") return convert;
   if (chosen == "info") return info;
   if (chosen == "view") return view;
+  if (chosen == "serve") return serve;
   if (chosen == "options") return ShowText{options_json() + "\n"};
   return phantom;
 }

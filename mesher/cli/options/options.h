@@ -56,6 +56,7 @@ struct MeshCommand {
   bool verify = false;
   bool verify_fidelity = false;  ///< implies verify
   bool stats = false;
+  bool json_progress = false;
   bool quiet = false;
 
   static constexpr auto options() {
@@ -130,6 +131,9 @@ struct MeshCommand {
                {.unset = "no", .uses = kOfFiles}),
         option(&M::stats, "stats", "", kRun, "print a table of the work and the losses of each thread",
                {.unset = "no", .uses = kOfFiles}),
+        option(&M::json_progress, "json-progress", "", kRun,
+               "print progress as JSON lines on standard output: phase, fraction, cells, seconds",
+               {.unset = "no", .uses = kInPodm}),
         option(&M::quiet, "quiet", "", kRun, "print neither progress nor summary",
                {.unset = "both, on standard error", .uses = kOfFiles})};
   }
@@ -151,7 +155,8 @@ struct ConvertCommand {
 struct InfoCommand {
   ImageArguments image;
   bool json = false;
-  bool plan = false;  ///< also print the plan of the run below, which has no image of its own
+  std::string output_path;  ///< of the image with its selected labels; empty: none
+  bool plan = false;        ///< also print the plan of the run below, which has no image of its own
   MeshCommand planned;
 };
 
@@ -188,13 +193,41 @@ struct ViewCommand {
   bool without_legend = false;
 };
 
+/// podm serve
+struct ServeCommand {
+  std::uint64_t port = 0;  ///< 0: the system chooses one
+  bool without_browser = false;
+  double max_upload_mib = 1024;
+  MemoryLimit max_memory;
+  double max_seconds = 3600;
+
+  static constexpr auto options() {
+    using S = ServeCommand;
+    using enum OptionGroup;
+    return std::tuple{
+        option(&S::port, "port", "N", kRun, "port of 127.0.0.1",
+               {.unset = "a free one", .uses = kInPodm, .most = 65535}),
+        option(&S::without_browser, "no-browser", "", kRun, "only print the address",
+               {.unset = "a browser opens it", .uses = kInPodm}),
+        option(&S::max_upload_mib, "max-upload-mib", "MIB", kRun,
+               "largest image that the page may send, MiB", {.uses = kInPodm, .quantity = "number of MiB"}),
+        option(&S::max_memory, "max-memory-gib", "GIB", kRun,
+               "memory of each program that the page runs, GiB",
+               {.unset = "80 % of the available memory", .uses = kInPodm, .quantity = "number of GiB"}),
+        option(&S::max_seconds, "max-seconds", "S", kRun,
+               "longest time of each program that the page runs, seconds; a mesh that\n"
+               "reaches it is valid and coarse in places",
+               {.uses = kInPodm, .quantity = "number of seconds"})};
+  }
+};
+
 /// --help, --version: text for standard output.
 struct ShowText {
   std::string text;
 };
 
 using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand,
-                             ViewCommand, ShowText>;
+                             ViewCommand, ServeCommand, ShowText>;
 
 /// podm-mpi has the command mesh alone.
 enum class Program { kPodm, kPodmMpi };

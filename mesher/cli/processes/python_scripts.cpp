@@ -36,4 +36,14 @@ ScriptResult run_script(const std::string& script, const std::string& argument, 
   return {std::move(output), process.exit_code()};
 }
 
+void become_script(const std::string& script, const std::string& argument, const std::string& asked_by) {
+  std::vector<std::string> command = script_command(script, asked_by);
+  command.push_back(argument);
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(arguments[0], arguments.data());
+  throw InputError(fmt::format("{}: {} cannot be run", asked_by, command[0]));
+}
+
 }  // namespace podm::cli

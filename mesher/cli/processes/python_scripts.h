@@ -19,4 +19,9 @@ struct ScriptResult {
 ScriptResult run_script(const std::string& script, const std::string& argument, const std::string& asked_by,
                         const SignalThread& signals);
 
+/// Replaces this program by a script, which gets its process, its signals and its exit code. Returns only by
+/// InputError, if it cannot.
+[[noreturn]] void become_script(const std::string& script, const std::string& argument,
+                                const std::string& asked_by);
+
 }  // namespace podm::cli

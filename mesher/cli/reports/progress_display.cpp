@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string_view>
+
+#include "cli/reports/json_text.h"
 
 namespace podm::cli {
 namespace {
@@ -25,6 +28,13 @@ std::string bar(double fraction) {
   return fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", kBarWidth - filled);
 }
 
+std::string json_of(const Progress& progress) {
+  return json_line({{"phase", progress.phase},
+                    {"fraction", progress.fraction},
+                    {"cells", progress.cells},
+                    {"seconds", progress.seconds}});
+}
+
 }  // namespace
 
 ProgressDisplay::Style ProgressDisplay::style_for(std::FILE* stream) {
@@ -41,7 +51,10 @@ void ProgressDisplay::show(const Progress& progress) {
   if (style_ == Style::kNone) return;
   Progress shown = progress;
   shown.fraction = std::clamp(progress.fraction, 0.0, 1.0);
-  if (style_ == Style::kBar) {
+  if (style_ == Style::kJson) {
+    fmt::print(stream_, "{}", json_of(shown));
+    std::fflush(stream_);
+  } else if (style_ == Style::kBar) {
     fmt::print(stream_, "{}{}{}", kEraseLine, bar(shown.fraction), describe(shown));
     std::fflush(stream_);
   } else if (shown.phase != phase_ || shown.seconds >= next_line_s_) {

@@ -1,4 +1,4 @@
-// Shows a run's progress: a bar on a terminal, occasional lines elsewhere.
+// Shows a run's progress: a bar on a terminal, occasional lines elsewhere, JSON for programs.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +10,7 @@ namespace podm::cli {
 
 class ProgressDisplay {
  public:
-  enum class Style { kNone, kBar, kLines };
+  enum class Style { kNone, kBar, kLines, kJson };
   /// Returns kBar if `stream` is a terminal that can redraw a line, otherwise kLines.
   static Style style_for(std::FILE* stream);
 

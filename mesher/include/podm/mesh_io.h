@@ -53,6 +53,7 @@ struct MeshFileOptions {
 /// apply to the format, or if the file cannot be written.
 void check_mesh_path(const std::string& path, const MeshFileOptions& options = {});
 void check_surface_path(const std::string& path);  ///< accepts .stl and .ply
+bool is_surface_path(const std::string& path);     ///< true for these
 
 /// Writes the mesh in the format of the extension. Field data, comments or information records hold
 /// promises_of() and the space. Returns a sentence for each property of the mesh that the file cannot hold
