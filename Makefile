@@ -1,8 +1,8 @@
 # Thin rules over CMake, the programs in build/bin/ and scripts/. `make` without a target lists them.
 
-MARCH = $(if $(NATIVE),native,x86-64-v3)
+MARCH = $(if $(NATIVE),-DPODM_MARCH=native,-UPODM_MARCH)
 CMAKE_FLAGS ?=
-CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) -DPODM_UNITE=ON $(CMAKE_FLAGS)
+CONFIGURE = cmake -S . -B build -G Ninja $(MARCH) -DPODM_UNITE=ON $(CMAKE_FLAGS)
 FIGURES = results/runs/figures
 INPUTS = --records results/runs results/submissions --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
@@ -40,7 +40,7 @@ help:
 	@echo "make clean         remove the build folders; results stay"
 	@echo
 	@echo "Each target makes its prerequisites, including setup and build."
-	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 processor"
+	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 or ARMv8 processor"
 	@echo "  IMAGE=FILE       (make experiments) use your own segmentation"
 	@echo "  DATA=FOLDER      (make test) also run the tests on the real images in FOLDER"
 	@echo "  CMAKE_FLAGS=...  further flags for CMake"

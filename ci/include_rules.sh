@@ -1,5 +1,6 @@
 #!/bin/sh
-# Checks which folders of the tree may include which. Prints file:line of each forbidden include and exits with 1 then.
+# Checks which folders of the tree may include which, and which may include headers of the operating system and of the
+# processor or read the system's files. Prints file:line of each forbidden include and exits with 1 then.
 set -euf  # no expansion of file names: the patterns of may_include are for `case`
 cd "$(dirname "$0")/.."
 
@@ -78,16 +79,45 @@ is_allowed() {  # $1 may include $2; both are rooms
   return 1
 }
 
+# Sets `of_system` to what a port to another system or processor has to replace in a file that includes <$1>: "system",
+# "processor" or "".
+set_of_system() {
+  case $1 in
+    sys/* | linux/* | net/* | netinet/* | arpa/* | asm/*) of_system=system ;;
+    dirent.h | dlfcn.h | fcntl.h | malloc.h | poll.h | pthread.h | sched.h | signal.h) of_system=system ;;
+    spawn.h | syscall.h | termios.h | ucontext.h | unistd.h | hwloc.h | hwloc/* | numa*.h) of_system=system ;;
+    *intrin.h | arm_*.h) of_system=processor ;;
+    *) of_system="" ;;
+  esac
+}
+
+# docs/reference/porting.md lists these folders. Tests and fuzz targets test the system's behaviour, too.
+may_include_system() {  # file $1 may include headers of the kind $2
+  case $2:$1 in
+    processor:mesher/runtime/*) ;;
+    processor:*) return 1 ;;
+    *:*/tests/* | *:*/fuzz/* | *:ci/*) ;;
+    *:mesher/runtime/* | *:mesher/files/* | *:mesher/cli/processes/* | *:mesher/cli/reports/*) ;;
+    *:harness/* | *:verifiers/readers/* | *:verifiers/report/* | *:verifiers/main.cpp) ;;
+    *) return 1 ;;
+  esac
+}
+
 includes=$(git grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*["<]' -- '*.h' '*.cpp')
 violations=$(echo "$includes" | while IFS=: read -r file line text; do
   name=${text#*[\"<]}
   name=${name%%[\">]*}
   case $name in ../* | */../*) echo "$file:$line: a path that goes up: $name" ;; esac
+  set_of_system "$name"
+  [ -z "$of_system" ] || may_include_system "$file" $of_system ||
+    echo "$file:$line: a header of the $of_system: $name; docs/reference/porting.md lists who may include it"
   set_target_of "$file" "$name"
   [ -n "$target" ] || continue
   set_part_of "$file"
   from=$part
   set_part_of "$target"
   is_allowed "$from" "$part" || echo "$file:$line: $from may not include $target"
-done)
+done
+git grep -nE '"/(proc|sys)/' -- 'mesher/*.h' 'mesher/*.cpp' ':!*/tests/*' ':!mesher/runtime' ':!mesher/cli/processes' |
+  sed -E 's/^([^:]*:[^:]*:).*/\1 a file of the system: docs\/reference\/porting.md lists who may read it/')
 [ -z "$violations" ] || { echo "$violations"; exit 1; }

@@ -11,8 +11,12 @@ foreach(language C CXX)
   endif()
 endforeach()
 
+set(podm_march "")
+if(PODM_MARCH)
+  set(podm_march -march=${PODM_MARCH})
+endif()
 add_library(podm_flags INTERFACE)
-target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
+target_compile_options(podm_flags INTERFACE ${podm_march} -ffp-contract=off -fno-math-errno -Wall -Wextra
                                             -Wshadow -Werror
                                             -Wno-psabi)  # vectors are passed only within a file
 target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # keeps the GPL parts of CGAL out

@@ -19,6 +19,7 @@
 
 #include "algorithms/computing_node.h"
 #include "algorithms/podm.h"
+#include "delaunay/planted_fault.h"
 #include "workers/accounting.h"
 
 namespace podm {
@@ -118,7 +119,9 @@ void distribute(const AccountedLeafCells<LeafCells, Time>& cells,
     for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
          slice = next_slice++)
       cells.distribute(self, slice);
-    if (--num_at_work > 0) return;
+    // Release and acquire: the last worker sees the cells that the others distributed.
+    if (num_at_work.fetch_sub(1, order_of(OrderedAccess::kDistribution, std::memory_order_acq_rel)) > 1)
+      return;
     cells.share_out(self, queue, over);
   });
 }

@@ -1,11 +1,10 @@
 #include "algorithms/memory_model.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 
 #include "isosurface/feature_transform.h"
+#include "runtime/system_memory.h"
 
 namespace podm {
 
@@ -33,9 +32,7 @@ std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes
 }
 
 std::uint64_t memory_of_run(const Limits& limits) {
-  if (limits.max_memory_bytes > 0) return limits.max_memory_bytes;
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+  return limits.max_memory_bytes > 0 ? limits.max_memory_bytes : physical_memory_bytes();
 }
 
 std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor) {

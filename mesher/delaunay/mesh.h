@@ -7,6 +7,7 @@
 
 #include "delaunay/id_arena.h"
 #include "delaunay/lock_contract.h"
+#include "delaunay/planted_fault.h"
 #include "delaunay/step.h"
 #include "geometry/box.h"
 #include "geometry/circumsphere.h"
@@ -48,17 +49,18 @@ static_assert(sizeof(Vertex) == 32);
 inline Point peek_point(const Vertex& v) {
   const auto peek = [](const double& coordinate) {
     step();
-    return load(coordinate, std::memory_order_acquire);
+    return load(coordinate, order_of(OrderedAccess::kPeekPoint, std::memory_order_acquire));
   };
   return {peek(v.point.x), peek(v.point.y), peek(v.point.z)};
 }
 /// Turns an unused vertex into one at `p`.
 inline void place(Vertex& v, const Point& p, VertexKind kind) {
-  store(v.point.x, p.x, std::memory_order_release);
+  const std::memory_order release = order_of(OrderedAccess::kPlace, std::memory_order_release);
+  store(v.point.x, p.x, release);
   step();
-  store(v.point.y, p.y, std::memory_order_release);
+  store(v.point.y, p.y, release);
   step();
-  store(v.point.z, p.z, std::memory_order_release);
+  store(v.point.z, p.z, release);
   v.kind = kind;
 }
 
@@ -101,10 +103,11 @@ class Mesh {
   /// a vertex of the new cell also sees the new stamp.
   std::array<VertexId, 2> peek_two_vertices(CellId c) const {
     const auto& v = cells_[c].vertices;
+    const std::memory_order acquire = order_of(OrderedAccess::kPeekCell, std::memory_order_acquire);
     step();
-    const VertexId last = load(v[3], std::memory_order_acquire);
+    const VertexId last = load(v[3], acquire);
     step();
-    return {last, load(v[0], std::memory_order_acquire)};
+    return {last, load(v[0], acquire)};
   }
   /// Return more data to callers without locks. If the cell is being replaced, the answer may belong to the
   /// old cell, to the new cell or to neither.
@@ -157,7 +160,7 @@ class Mesh {
     cell.label = kUnknownLabel;
     for (unsigned i = 0; i < 4; ++i) {
       step();
-      store(cell.vertices[i], vertices[i], std::memory_order_release);
+      store(cell.vertices[i], vertices[i], order_of(OrderedAccess::kRenew, std::memory_order_release));
     }
   }
   /// Sets the sphere of a cell just renewed. Relaxed: peek_center() may return a part of the old center.

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdlib>
 #include <string>
-#include <utility>
 
 #include "podm/errors.h"
 
@@ -11,32 +10,48 @@ namespace podm {
 
 namespace {
 
-constexpr std::array kFaults{std::pair{"no_lock", LocksTaken{.to_read = 0}},
-                             std::pair{"one_lock", LocksTaken{.to_read = 1}},
-                             std::pair{"three_locks", LocksTaken{.to_replace = 3}},
-                             std::pair{"three_in_zone", LocksTaken{.in_zone = 3}},
-                             std::pair{"three_to_move", LocksTaken{.to_move = 3}},
-                             std::pair{"three_in_cavity", LocksTaken{.in_cavity = 3}}};
+struct Fault {
+  const char* name = "";
+  LocksTaken locks = {};
+  OrderedAccess relaxed = OrderedAccess::kNone;
+};
 
-LocksTaken named_in_environment() {
+constexpr std::array kFaults{Fault{.name = "no_lock", .locks = {.to_read = 0}},
+                             Fault{.name = "one_lock", .locks = {.to_read = 1}},
+                             Fault{.name = "three_locks", .locks = {.to_replace = 3}},
+                             Fault{.name = "three_in_zone", .locks = {.in_zone = 3}},
+                             Fault{.name = "three_to_move", .locks = {.to_move = 3}},
+                             Fault{.name = "three_in_cavity", .locks = {.in_cavity = 3}},
+                             Fault{.name = "relaxed_lock", .relaxed = OrderedAccess::kLock},
+                             Fault{.name = "relaxed_unlock", .relaxed = OrderedAccess::kUnlock},
+                             Fault{.name = "relaxed_peek_point", .relaxed = OrderedAccess::kPeekPoint},
+                             Fault{.name = "relaxed_place", .relaxed = OrderedAccess::kPlace},
+                             Fault{.name = "relaxed_peek_cell", .relaxed = OrderedAccess::kPeekCell},
+                             Fault{.name = "relaxed_renew", .relaxed = OrderedAccess::kRenew},
+                             Fault{.name = "relaxed_distribution", .relaxed = OrderedAccess::kDistribution}};
+
+Fault named_in_environment() {
   const char* const asked = std::getenv("PODM_PLANTED_FAULT");
   if (asked == nullptr) return {};
   std::string names;
-  for (const auto& [name, locks] : kFaults) {
-    if (asked == std::string(name)) return locks;
-    names += std::string(" ") + name;
+  for (const Fault& fault : kFaults) {
+    if (asked == std::string(fault.name)) return fault;
+    names += std::string(" ") + fault.name;
   }
   throw InputError("PODM_PLANTED_FAULT: unknown fault '" + std::string(asked) + "'; known faults:" + names);
 }
 
-LocksTaken& planted() {
-  static LocksTaken locks = named_in_environment();
-  return locks;
+Fault& planted() {
+  static Fault fault = named_in_environment();
+  return fault;
 }
 
 }  // namespace
 
-LocksTaken locks_taken() { return planted(); }
-void plant_fault(LocksTaken locks) { planted() = locks; }
+LocksTaken locks_taken() { return planted().locks; }
+void plant_fault(LocksTaken locks) { planted().locks = locks; }
+std::memory_order order_of(OrderedAccess access, std::memory_order order) {
+  return planted().relaxed == access ? std::memory_order_relaxed : order;
+}
 
 }  // namespace podm

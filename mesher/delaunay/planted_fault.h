@@ -1,6 +1,9 @@
-// Planted faults in the lock protocol for tests and CI. They show that schedules and the thread sanitizer
-// (step.h) and the assertions of lock_contract.h would detect a broken protocol. An ordinary build has none.
+// Planted faults in the lock protocol and in its memory orders, for tests and CI. They show that schedules
+// and the thread sanitizer (step.h) and the assertions of lock_contract.h would detect a broken protocol. An
+// ordinary build has none.
 #pragma once
+
+#include <atomic>
 
 namespace podm {
 
@@ -13,14 +16,32 @@ struct LocksTaken {
   unsigned to_read = 2, to_replace = 4, in_zone = 4, to_move = 4, in_cavity = 4;
 };
 
+/// The atomic accesses by which one worker sees what another has written. All other atomic accesses are
+/// relaxed because they pass no data, or have the default order.
+enum class OrderedAccess {
+  kNone,
+  kLock,          // VertexLocks::try_lock
+  kUnlock,        // VertexLocks::unlock_all
+  kPeekPoint,     // peek_point
+  kPlace,         // place
+  kPeekCell,      // Mesh::peek_two_vertices
+  kRenew,         // Mesh::renew
+  kDistribution,  // the count of workers that distribute cells to leaves (algorithms/leaf_loop.h)
+};
+
 #if defined(PODM_INTERLEAVING) || defined(PODM_CHECK_LOCKS)
 /// Returns the planted numbers, or those that $PODM_PLANTED_FAULT selects: no_lock or one_lock to read a
 /// cell, three_locks, three_in_zone, three_to_move or three_in_cavity to replace it. Throws InputError if the
 /// variable names another fault.
 LocksTaken locks_taken();
 void plant_fault(LocksTaken locks);
+/// Returns `order`, or the relaxed order for the access that $PODM_PLANTED_FAULT selects: relaxed_lock,
+/// relaxed_unlock, relaxed_peek_point, relaxed_place, relaxed_peek_cell, relaxed_renew or
+/// relaxed_distribution.
+std::memory_order order_of(OrderedAccess access, std::memory_order order);
 #else
 constexpr LocksTaken locks_taken() { return {}; }
+constexpr std::memory_order order_of(OrderedAccess, std::memory_order order) { return order; }
 #endif
 
 }  // namespace podm

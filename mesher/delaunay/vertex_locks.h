@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "delaunay/mesh.h"
+#include "delaunay/planted_fault.h"
 #include "delaunay/step_result.h"
 #include "runtime/worker_id.h"
 
@@ -57,7 +58,8 @@ class VertexLocks {
     step();
     // Acquire: sees the writes of the last holder. Relaxed on failure: only the id is used.
     if (holder == 0 &&
-        lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
+        lock.compare_exchange_strong(holder, mine_, order_of(OrderedAccess::kLock, std::memory_order_acquire),
+                                     std::memory_order_relaxed)) {
       held_.push_back(&v);
       return StepResult::kDone;
     }
@@ -70,7 +72,8 @@ class VertexLocks {
     // Release: the next holder sees this worker's writes.
     for (Vertex* v : held_) {
       step();
-      std::atomic_ref<std::uint32_t>(v->lock).store(0, std::memory_order_release);
+      std::atomic_ref<std::uint32_t>(v->lock).store(
+          0, order_of(OrderedAccess::kUnlock, std::memory_order_release));
     }
     held_.clear();
   }

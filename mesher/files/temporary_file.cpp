@@ -57,6 +57,12 @@ TemporaryFile::~TemporaryFile() {
   leftovers.drop(temporary_.path);
 }
 
+int TemporaryFile::new_descriptor() const {
+  const int descriptor = ::dup(temporary_.descriptor);
+  if (descriptor < 0) fail_to_write(path_, errno);
+  return descriptor;
+}
+
 void TemporaryFile::write(const char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(temporary_.descriptor, bytes, size);

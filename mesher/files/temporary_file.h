@@ -23,7 +23,8 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  int descriptor() const { return temporary_.descriptor; }
+  /// Returns a further descriptor of the file, for a writer that closes it. finish() keeps one of its own.
+  int new_descriptor() const;
   /// Returns the path of the bytes until publish(), for writers that need a name.
   const std::string& temporary_path() const { return temporary_.path; }
   void write(const char* bytes, std::size_t size);

@@ -1,6 +1,5 @@
 // Writes label images as NIfTI-1.
 #include <nifti/nifti1_io.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -95,8 +94,8 @@ nifti_1_header header_of(const LabelImage& image, const VoxelFormat& format) {
 class PendingFile {
  public:
   PendingFile(const std::string& path, bool is_compressed) : path_(path), file_(path) {
-    // The stream gets its own descriptor, as gzclose() would close the one that fsync() needs.
-    stream_ = ::gzdopen(::dup(file_.descriptor()), is_compressed ? "wb6" : "wbT");
+    // gzclose() closes the descriptor.
+    stream_ = ::gzdopen(file_.new_descriptor(), is_compressed ? "wb6" : "wbT");
     if (stream_ == nullptr) fail_to_write(path_, errno);
   }
   ~PendingFile() {

@@ -1,7 +1,6 @@
 #include "run/phases_of_run.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <new>
@@ -14,6 +13,7 @@
 #include "run/extract_mesh.h"
 #include "run/measure_quality.h"
 #include "run/report_on_smoothing.h"
+#include "runtime/system_memory.h"
 #include "sizing/default_sizes.h"
 #include "sizing/make_size_grid.h"
 #include "smoothing/smooth_interfaces.h"
@@ -195,7 +195,7 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
   const double start_s = seconds_();
-  malloc_trim(0);  // makes the workers' memory available to the mesh
+  return_free_memory();  // makes the workers' memory available to the mesh
   extract(options_.space == Space::kVoxel ? Space::kRas : options_.space);
   report.phases_s["extract"] += seconds_() - start_s;
 }

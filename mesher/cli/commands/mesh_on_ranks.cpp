@@ -11,6 +11,7 @@
 #include "cli/commands/mesh_run.h"
 #include "cli/commands/verify_mesh.h"
 #include "cli/options/options_for_image.h"
+#include "cli/processes/own_program.h"
 #include "cli/processes/ranks_of_machine.h"
 #include "cli/reports/appended_file.h"
 #include "cli/reports/input_sha256.h"
@@ -73,7 +74,7 @@ class Run {
       if (!command_.log_path.empty()) log_.emplace(own_log_path());
     };
     do_collectively(check, ranks_);
-    expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
+    expect_agreement({{"program", "SHA-256 " + file_sha256(kOwnProgram)},
                       {"output", command_.mesh_path},
                       {"--log", command_.log_path},
                       {"--verify", command_.verify ? "requested" : "not requested"}},

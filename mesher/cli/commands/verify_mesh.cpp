@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/processes/child_process.h"
+#include "cli/processes/own_program.h"
 #include "files/temporary_file.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
@@ -16,11 +15,7 @@
 namespace podm::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string verifier_path() {
-  return (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string();
-}
+std::string verifier_path() { return (folder_of_own_program() / "podm-verify").string(); }
 
 using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -139,7 +134,7 @@ void check_verifier(const MeshCommand& command) {
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
         "--verify: podm-verify does not read {}; it reads all other formats that podm writes", mesh_path));
-  if (::access(verifier_path().c_str(), X_OK) != 0)
+  if (!can_be_run(verifier_path()))
     throw InputError(fmt::format("--verify: {} cannot be run", verifier_path()));
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <vector>
 
 #include "cli/processes/child_process.h"
+#include "cli/processes/own_program.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
@@ -15,9 +15,9 @@ namespace {
 constexpr const char* kPython = "/usr/bin/python3";  // the interpreter that finds Debian's modules
 
 std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  const auto folder = folder_of_own_program().parent_path();
   const std::string path = (folder / PODM_SHARE / script).string();
-  if (::access(kPython, X_OK) != 0)
+  if (!can_be_run(kPython))
     throw InputError(fmt::format("{}: {} is missing; install Debian's python3", asked_by, kPython));
   if (::access(path.c_str(), R_OK) != 0)
     throw InputError(
