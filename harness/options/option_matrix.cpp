@@ -77,6 +77,12 @@ Kind kind_of(const Json& option) {
   return kind == "file" ? Kind::kFile : Kind::kWord;
 }
 
+// The greatest value of an option that counts, as podm declares it.
+std::int64_t most_of(const Json& option) {
+  const auto most = option.find("most");
+  return most != option.end() && most->is_number_integer() ? most->get<std::int64_t>() : kMaxThreads;
+}
+
 // The options of podm that experiments may set, as the program declares them: `podm options`, written by the
 // build.
 std::vector<MesherOption> options_of_podm() {
@@ -85,13 +91,8 @@ std::vector<MesherOption> options_of_podm() {
   if (!declared.is_array()) throw InputError(PODM_OPTIONS ": not the output of `podm options`");
   std::vector<MesherOption> options;
   for (const Json& option : declared)
-    if (const Json& uses = option.at("uses");
-        std::find(uses.begin(), uses.end(), "experiments") != uses.end())
-      options.push_back({option.at("key"), kind_of(option),
-                         option.value("most", Json(kMaxThreads)).is_number_integer()
-                             ? option.value("most", kMaxThreads)
-                             : kMaxThreads,
-                         option.at("not_on_ranks")});
+    if (is_among(option.at("uses"), "experiments"))
+      options.push_back({option.at("key"), kind_of(option), most_of(option), option.at("not_on_ranks")});
   return options;
 }
 

@@ -24,6 +24,18 @@ Peer ask_for_version(const std::string& program, const std::string& podm) {
   return {program, {}, line.empty() ? program + " --version: " + reply.failure_text() : line};
 }
 
+// A peer promises what its own documentation says; its rows show which claims of podm-verify its meshes meet.
+Json judging_of_peers(double radius_mm) {
+  Json claims = {"structure", "radius_edge", "boundary_angles",  "conformity",
+                 "surface",   "labels",      "surface_vertices", "delaunay"};
+  Json options = Json::array();
+  if (radius_mm > 0) {
+    claims.push_back("size");
+    options = {"--radius", fmt::format("{}", radius_mm)};
+  }
+  return {{"claims", claims}, {"options", options}};
+}
+
 }  // namespace
 
 std::string Peer::sha256() const {
@@ -53,18 +65,6 @@ std::vector<std::string> peer_command(const Trial& trial, const Preparation& pre
   const std::vector<std::string> options = mesher_arguments(resolved_options(trial, preparation));
   command.insert(command.end(), options.begin(), options.end());
   return command;
-}
-
-// A peer promises what its own documentation says; its rows show which claims of podm-verify its meshes meet.
-static Json judging_of_peers(double radius_mm) {
-  Json claims = {"structure", "radius_edge", "boundary_angles",  "conformity",
-                 "surface",   "labels",      "surface_vertices", "delaunay"};
-  Json options = Json::array();
-  if (radius_mm > 0) {
-    claims.push_back("size");
-    options = {"--radius", fmt::format("{}", radius_mm)};
-  }
-  return {{"claims", claims}, {"options", options}};
 }
 
 Json complete_record(const Trial& trial, const Preparation& preparation, Json record) {

@@ -19,14 +19,14 @@ void add_row(const LabelIndex* row, int size, LabelCounts& counts) {
   }
 }
 
-// The bounds of the foreground that one thread has visited.
-struct alignas(64) VoxelBounds {
+// The bounds of the foreground of some rows.
+struct VoxelBounds {
   std::array<int, 3> low, high{-1, -1, -1};
 
-  void add(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  void operator+=(const VoxelBounds& b) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], a[axis]);
-      high[axis] = std::max(high[axis], b[axis]);
+      low[axis] = std::min(low[axis], b.low[axis]);
+      high[axis] = std::max(high[axis], b.high[axis]);
     }
   }
 
@@ -38,7 +38,7 @@ struct alignas(64) VoxelBounds {
     if (first == end) return;
     const auto after_last =
         std::find_if(std::reverse_iterator(end), std::reverse_iterator(first), is_foreground).base();
-    add({static_cast<int>(first - row), j, k}, {static_cast<int>(after_last - row) - 1, j, k});
+    *this += {{static_cast<int>(first - row), j, k}, {static_cast<int>(after_last - row) - 1, j, k}};
   }
 };
 
@@ -53,14 +53,9 @@ std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {
-  std::vector<VoxelBounds> bounds(num_threads(threads), VoxelBounds{image.size});
-  parallel_for(static_cast<std::size_t>(image.size[2]), bounds.size(),
-               [&](std::size_t k, std::size_t thread) {
-                 for (int j = 0; j < image.size[1]; ++j)
-                   bounds[thread].add_row(image, j, static_cast<int>(k));
-               });
-  for (const VoxelBounds& b : bounds) bounds[0].add(b.low, b.high);
-  const VoxelBounds& all = bounds[0];
+  const VoxelBounds all =
+      sum_over_rows(image, threads, VoxelBounds{image.size},
+                    [&](VoxelBounds& bounds, int j, int k) { bounds.add_row(image, j, k); });
   if (all.high[0] < 0) throw InputError("the image has no foreground");
   const Affine a = voxels_to_working(image);
   const auto bound = [&](std::size_t row,

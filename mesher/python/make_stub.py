@@ -5,14 +5,11 @@ Usage: make_stub.py OPTIONS.json
 OPTIONS.json is the output of `podm options`.
 """
 import json
+import pathlib
 import sys
 
-TYPES = {"flag": "bool", "choice": "str | None", "real": "float | None", "integer": "int | None",
-         "file": "StrPath | None", "text": "str | int | None", "two reals": "tuple[float, float] | None",
-         "lengths of labels": "Mapping[str | int, float] | None",
-         "lengths of pairs of labels":
-             "Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None",
-         "label values": "LabelValues | None", "names of label values": "Mapping[str, LabelValues] | None"}
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "podm"))  # the package itself needs the extension module
+from keywords import TYPES, default_of, options_of_mesh, options_of_plan  # noqa: E402
 
 HEAD = '''"""Types of podm.mesh and podm.plan; meshing.py has their descriptions."""
 
@@ -34,7 +31,7 @@ OF_THE_IMAGE = ["labels: npt.ArrayLike | StrPath", "*", "affine: npt.ArrayLike |
 
 
 def parameter(option):
-    return f"{option['keyword']}: {TYPES[option['kind']]} = {'False' if option['kind'] == 'flag' else 'None'}"
+    return f"{option['keyword']}: {TYPES[option['kind']]} = {default_of(option)}"
 
 
 def definition(name, parameters, result):
@@ -42,11 +39,11 @@ def definition(name, parameters, result):
 
 
 def stub(options):
-    of_python = [option for option in options if "python" in option["uses"] and option["keyword"] != "names"]
-    of_plan = [option for option in of_python if "plan" in option["uses"] or option["group"] == "Labels"]
     progress = "progress: Callable[[_podm.Progress], object] | None = None"
-    return "\n\n".join([HEAD, definition("mesh", [*OF_THE_IMAGE, progress, *map(parameter, of_python)], "Mesh"),
-                        definition("plan", [*OF_THE_IMAGE, *map(parameter, of_plan)], "dict[str, Any]")])
+    keywords_of_mesh = map(parameter, options_of_mesh(options))
+    keywords_of_plan = map(parameter, options_of_plan(options))
+    return "\n\n".join([HEAD, definition("mesh", [*OF_THE_IMAGE, progress, *keywords_of_mesh], "Mesh"),
+                        definition("plan", [*OF_THE_IMAGE, *keywords_of_plan], "dict[str, Any]")])
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import json
 import os
-import unittest
 
 from podm_process import PodmTestCase, run_podm
 

@@ -86,6 +86,21 @@ class Info(PodmTestCase):
 
 
 class Phantom(PodmTestCase):
+    def test_names_of_labels_are_those_of_the_phantom(self):
+        for phantom in "abdomen", "spheres", "torus":
+            path, names = self.folder / "p.nii", self.folder / "names.txt"
+            self.assert_exit(run_podm("phantom", phantom, "--size", "64", "-o", path, "--label-names", names), 0)
+            from_file, direct = (json.loads(run_podm("info", "--json", *image).stdout)["labels"]
+                                 for image in ((path, "--label-names", names), (f"phantom:{phantom}@64",)))
+            self.assertEqual(from_file, direct)
+            self.assertTrue(all(label["name"] for label in from_file))
+
+    def test_names_without_an_image_are_not_left_behind(self):
+        names = self.folder / "names.txt"
+        self.assert_refused(["phantom", "torus", "--label-names", names, "-o", self.folder / "p.png"], "p.png")
+        self.assert_refused(["phantom", "torus", "--label-names", names, "-o", names], "is the file of the image")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_a_written_phantom_is_the_phantom(self):
         path = self.folder / "p.nii.gz"
         self.assert_exit(run_podm("phantom", "torus", "--size", "32", "-o", path), 0)

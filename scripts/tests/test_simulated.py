@@ -4,8 +4,7 @@ import unittest
 
 import paths  # noqa: F401
 import synthetic
-from figures import (ablation, deviation, lost, machine, outcome, paper, scaling, simulated_sizes, style, table1,
-                     validation)
+from figures import ablation, deviation, lost, machine, outcome, paper, scaling, simulated_sizes, style, validation
 from report_page.first_screen import scales
 from report_page.limits import limits
 from test_figures import frame_of

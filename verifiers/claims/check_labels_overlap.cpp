@@ -73,6 +73,7 @@ class Tetrahedron {
   std::array<std::array<double, 4>, 4> planes_;
 };
 
+// Finds the cells of voxel centers.
 class Raster {
  public:
   Raster(const Mesh& mesh, const Image& image, const std::vector<Point>& points)
@@ -87,16 +88,25 @@ class Raster {
     Box grid;
     for (std::size_t axis = 0; axis < 3; ++axis) grid.last[axis] = image.size[axis] - 1;
     box_ = voxels_between(low, high, grid);
-    labels_.resize(box_.length(0) * box_.length(1) * box_.length(2));
   }
 
   std::size_t num_slices() const { return box_.length(2); }
 
-  // Draws all cells that reach into these slices, in their order.
-  void draw(std::size_t first_slice, std::size_t end_slice) {
+  // Adds the voxels of these slices to `overlaps`.
+  void count(std::size_t first_slice, std::size_t end_slice,
+             std::unordered_map<LabelValue, LabelOverlap>& overlaps) const {
     Box slab = box_;
     slab.last[2] = box_.first[2] + static_cast<int>(end_slice) - 1;
     slab.first[2] = box_.first[2] + static_cast<int>(first_slice);
+    count(draw(slab), slab, overlaps);
+  }
+
+ private:
+  using Labels = std::vector<LabelValue>;  // of the voxels of a slab; 0: in no cell
+
+  // Draws all cells that reach into the slab, in their order.
+  Labels draw(const Box& slab) const {
+    Labels labels(slab.length(0) * slab.length(1) * slab.length(2));
     for (CellId cell = 0; cell < mesh_.cells.size(); ++cell) {
       std::array<Point, 4> v;
       for (std::size_t i = 0; i < 4; ++i) {
@@ -111,23 +121,37 @@ class Raster {
         }
       const Box box = voxels_between(low, high, slab);
       if (box.length(0) * box.length(1) * box.length(2) > 0)
-        draw(Tetrahedron(v), box, mesh_.cell_labels[cell]);
+        draw(Tetrahedron(v), box, mesh_.cell_labels[cell], slab, labels);
     }
+    return labels;
   }
 
-  // Adds the voxels of these slices to `overlaps`.
-  void count(std::size_t first_slice, std::size_t end_slice,
+  static void draw(const Tetrahedron& tetrahedron, const Box& box, LabelValue label, const Box& slab,
+                   Labels& labels) {
+    for (int k = box.first[2]; k <= box.last[2]; ++k)
+      for (int j = box.first[1]; j <= box.last[1]; ++j) {
+        const auto [low, high] = tetrahedron.interval(j, k);
+        if (!(low <= high)) continue;
+        const int first = clamped(std::ceil(low), box.first[0], box.last[0] + 1),
+                  last = clamped(std::floor(high), box.first[0] - 1, box.last[0]);
+        LabelValue* row = labels.data() + (static_cast<std::size_t>(k - slab.first[2]) * slab.length(1) +
+                                           static_cast<std::size_t>(j - slab.first[1])) *
+                                              slab.length(0);
+        for (int i = first; i <= last; ++i) row[i - slab.first[0]] = label;
+      }
+  }
+
+  void count(const Labels& labels, const Box& slab,
              std::unordered_map<LabelValue, LabelOverlap>& overlaps) const {
-    for (std::size_t k = first_slice; k < end_slice; ++k)
-      for (std::size_t j = 0; j < box_.length(1); ++j) {
-        const LabelValue* row = labels_.data() + (k * box_.length(1) + j) * box_.length(0);
-        const std::uint32_t* voxel =
-            image_.voxels.data() +
-            ((static_cast<std::size_t>(box_.first[2]) + k) * static_cast<std::size_t>(image_.size[1]) +
-             static_cast<std::size_t>(box_.first[1]) + j) *
-                static_cast<std::size_t>(image_.size[0]) +
-            box_.first[0];
-        for (std::size_t i = 0; i < box_.length(0); ++i) {
+    const LabelValue* row = labels.data();
+    for (int k = slab.first[2]; k <= slab.last[2]; ++k)
+      for (int j = slab.first[1]; j <= slab.last[1]; ++j, row += slab.length(0)) {
+        const std::uint32_t* voxel = image_.voxels.data() +
+                                     (static_cast<std::size_t>(k) * static_cast<std::size_t>(image_.size[1]) +
+                                      static_cast<std::size_t>(j)) *
+                                         static_cast<std::size_t>(image_.size[0]) +
+                                     slab.first[0];
+        for (std::size_t i = 0; i < slab.length(0); ++i) {
           if (row[i] == 0) continue;
           LabelOverlap& overlap = overlaps[row[i]];
           ++overlap.mesh_voxels;
@@ -136,26 +160,10 @@ class Raster {
       }
   }
 
- private:
-  void draw(const Tetrahedron& tetrahedron, const Box& box, LabelValue label) {
-    for (int k = box.first[2]; k <= box.last[2]; ++k)
-      for (int j = box.first[1]; j <= box.last[1]; ++j) {
-        const auto [low, high] = tetrahedron.interval(j, k);
-        if (!(low <= high)) continue;
-        const int first = clamped(std::ceil(low), box.first[0], box.last[0] + 1),
-                  last = clamped(std::floor(high), box.first[0] - 1, box.last[0]);
-        LabelValue* row = labels_.data() + (static_cast<std::size_t>(k - box_.first[2]) * box_.length(1) +
-                                            static_cast<std::size_t>(j - box_.first[1])) *
-                                               box_.length(0);
-        for (int i = first; i <= last; ++i) row[i - box_.first[0]] = label;
-      }
-  }
-
   const Mesh& mesh_;
   const Image& image_;
   const std::vector<Point>& points_;
   Box box_;
-  std::vector<LabelValue> labels_;  // 0: in no cell
 };
 
 long double six_volumes(const std::array<VertexId, 4>& v, const std::vector<Point>& p) {
@@ -189,10 +197,9 @@ std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& 
       voxels[thread][image.voxels[i]] += run - i;
     }
   });
-  Raster raster(mesh, image, points);
+  const Raster raster(mesh, image, points);
   PerThread<LabelOverlap> drawn(num_threads);
   parallel_ranges(raster.num_slices(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    raster.draw(begin, end);
     raster.count(begin, end, drawn[thread]);
   });
 

@@ -87,17 +87,20 @@ class SurfaceVertices {
     if (labels.empty()) return;
     ++part.num_vertices;
     const Point u = frame_.to_voxels(mesh_.vertices[v]);
-    check_change(v, u, part);
+    const std::uint32_t own = search_.label_at(u, part.tally.num_exact);
+    const auto other = check_change(v, u, own, part);
     if (judges_reach_) check_reach(v, u, labels, part.tally);
-    const bool meets_all = std::all_of(labels.begin(), labels.end(), [&](LabelValue label) {
-      return search_.find(u, is_label(label), kSearchRadiusFactor * bound_, part.tally.num_exact).has_value();
-    });
-    part.num_off_own_labels += meets_all ? 0 : 1;
+    const auto is_met = [&](LabelValue label) {
+      const auto is_label = [label](std::uint32_t found) { return static_cast<LabelValue>(found) == label; };
+      return is_label(own) || (other && is_label(other->label)) || find(u, is_label, part.tally);
+    };
+    part.num_off_own_labels += std::all_of(labels.begin(), labels.end(), is_met) ? 0 : 1;
   }
 
  private:
-  static LabelSearch::Wanted is_label(LabelValue label) {
-    return [label](std::uint32_t found) { return static_cast<LabelValue>(found) == label; };
+  std::optional<LabelSearch::Found> find(const Point& u, const LabelSearch::Wanted& wanted,
+                                         Tally& tally) const {
+    return search_.find(u, wanted, kSearchRadiusFactor * bound_, tally.num_exact);
   }
 
   // Returns the labels of the facets that have the vertex, each once; none for a vertex off the surface.
@@ -111,23 +114,26 @@ class SurfaceVertices {
     return labels;
   }
 
-  void check_change(VertexId v, const Point& u, VertexTally& part) const {
+  // Returns the point of another label than u's, `own`, near u.
+  std::optional<LabelSearch::Found> check_change(VertexId v, const Point& u, std::uint32_t own,
+                                                 VertexTally& part) const {
     Tally& tally = part.tally;
     ++tally.num_checked;
-    const std::uint32_t own = search_.label_at(u, tally.num_exact);
     const auto is_other = [own](std::uint32_t label) { return label != own; };
-    auto other = search_.find(u, is_other, kSearchRadiusFactor * bound_, tally.num_exact);
+    const auto near = find(u, is_other, tally);
     const bool holds =
-        other && is_within_bound(v, u, tally.num_exact) && is_within_bound(v, other->at, tally.num_exact);
+        near && is_within_bound(v, u, tally.num_exact) && is_within_bound(v, near->at, tally.num_exact);
+    auto other = near;
     for (std::size_t i = 0; !other && i < kFurtherVoxels.size(); ++i)
       other = search_.find(u, is_other, kFurtherVoxels[i], tally.num_exact);
     const double distance = other ? other->distance : std::numeric_limits<double>::infinity();
     part.furthest_voxels = std::max(part.furthest_voxels, distance);
-    if (holds && !tally.closest.wants(distance)) return;
+    if (holds && !tally.closest.wants(distance)) return near;
     Witness witness = witness_of(v, "the image's label changes at the vertex", distance);
     if (other) witness.points.push_back(frame_.voxels_to_mesh(other->at));
     witness.label = own;
     holds ? tally.closest.add(std::move(witness)) : tally.violation(std::move(witness));
+    return near;
   }
 
   void check_reach(VertexId v, const Point& u, const std::vector<LabelValue>& labels, Tally& tally) const {

@@ -80,7 +80,6 @@ std::optional<LabelSearch::Found> LabelSearch::along(const Point& u, const Point
 
 std::optional<LabelSearch::Found> LabelSearch::find(const Point& u, const Wanted& wanted, double reach,
                                                     std::uint64_t& num_exact) const {
-  if (const std::uint32_t label = label_at(u, num_exact); wanted(label)) return Found{u, label, 0};
   const Rivals rivals = this->rivals(u, wanted);
   if (is_out_of_reach(rivals, reach)) return std::nullopt;
   std::optional<Found> best;

@@ -26,7 +26,7 @@ class LabelSearch {
     double distance = 0;  ///< rounded
   };
   using Wanted = std::function<bool(std::uint32_t)>;
-  /// Returns a point within `reach` of u whose label is wanted, decided exactly; u itself if its label is
+  /// Returns a point within `reach` of u whose label is wanted, decided exactly. The label at u must not be
   /// wanted.
   std::optional<Found> find(const Point& u, const Wanted& wanted, double reach,
                             std::uint64_t& num_exact) const;

@@ -130,20 +130,22 @@ std::uint32_t LabelFunction::label_at(const Point& u) const {
   return weights.labels[weights.best()];
 }
 
+// Along each axis the factors of a weight are multiplied by the coordinate's denominator, so that all of them
+// are integers. This multiplies all weights by the same number.
 std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) const {
   std::array<int, 3> block{};
-  std::array<std::array<mpq_class, 2>, 3> factors;  // of the lower and the upper voxel along each axis
+  std::array<std::array<mpz_class, 2>, 3> factors;  // of the lower and the upper voxel along each axis
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (u[axis] <= -1 || u[axis] >= image_.size[axis]) return 0;
     mpz_class floor;
-    mpz_fdiv_q(floor.get_mpz_t(), u[axis].get_num_mpz_t(), u[axis].get_den_mpz_t());
+    mpz_fdiv_qr(floor.get_mpz_t(), factors[axis][1].get_mpz_t(), u[axis].get_num_mpz_t(),
+                u[axis].get_den_mpz_t());
     block[axis] = static_cast<int>(floor.get_si());
-    factors[axis][1] = u[axis] - floor;
-    factors[axis][0] = 1 - factors[axis][1];
+    factors[axis][0] = u[axis].get_den() - factors[axis][1];
   }
   const auto labels = corners(block);
   const auto voxel_weights = this->voxel_weights(block);
-  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; by label: the first of the greatest wins
+  std::map<std::uint32_t, mpz_class> weights;  // by label: the first of the greatest wins
   for (std::size_t c = 0; c < 8; ++c)
     weights[labels[c]] += voxel_weights[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
   auto best = weights.begin();

@@ -63,6 +63,9 @@ void add_phantom_command(CLI::App& program, PhantomCommand& command) {
            std::to_string(command.size)});
   require(add_one(app, "-o,--output", "FILE", "NIfTI file: .nii or .nii.gz [required]",
                   into(command.output_path)));
+  add_one(app, "--label-names", "FILE",
+          "also write the names of the labels, for podm mesh --label-names [default: none]",
+          into(command.label_names_path));
 }
 
 }  // namespace podm::cli

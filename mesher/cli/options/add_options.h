@@ -25,12 +25,6 @@ CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string&
                      const std::string& description, const Target& target);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
                       const std::string& description, const Setter& set);
-/// Adds an option that takes one of a choice's names.
-template <Named Choice>
-CLI::Option* add_choice(CLI::App& app, const std::string& names, const std::string& description,
-                        Choice& choice) {
-  return add_one(app, names, type_of_choices<Choice>(), description, into_choice(choice));
-}
 CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
 void require(CLI::Option* option);
 /// The heading of a group in the help.

@@ -84,10 +84,10 @@ void add_cut_options(CLI::App& app, ViewCommand& command) {
 
 void add_look_options(CLI::App& app, ViewCommand& command) {
   begin_group(app, "Appearance");
-  add_choice(app, "--colour",
-             "label; or quality of cells, bad cells bright: dihedral (smallest angle),\n"
-             "ratio (circumradius over shortest edge) or size (circumradius)",
-             command.colour);
+  add_one(app, "--colour", type_of_choices<Colour>(),
+          "label; or quality of cells, bad cells bright: dihedral (smallest angle),\n"
+          "ratio (circumradius over shortest edge) or size (circumradius)",
+          into(command.colour, parse_choice<Colour>, to_string(command.colour)));
   add_one(app, "--camera", "DEG,DEG",
           "direction of view: degrees to the right of the direction that faces the cut,\n"
           "and degrees above it",
@@ -97,7 +97,12 @@ void add_look_options(CLI::App& app, ViewCommand& command) {
            },
            fmt::format("{:g},{:g}", command.camera_deg[0], command.camera_deg[1])});
   add_one(app, "--zoom", "X", "magnification; at 1 the whole mesh fits the picture",
-          into_positive(command.zoom, "number"));
+          into(
+              command.zoom,
+              [](const std::string& text, const std::string& name) {
+                return parse_positive(text, name, "number");
+              },
+              shown(command.zoom)));
   add_one(app, "--size", "WxH", "size of the picture, pixels",
           into(command.size, parse_size, fmt::format("{}x{}", command.size[0], command.size[1])));
   add_one(app, "--background", "COLOUR", "white, black or #rrggbb",

@@ -54,6 +54,11 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
 
 namespace {
 
+const std::string& not_empty(const std::string& text, const std::string& option) {
+  if (text.empty()) throw InputError(option + ": its value is empty");
+  return text;
+}
+
 std::pair<double, double> two_positive(const std::string& text, const std::string& option,
                                        const std::string& form) {
   const std::vector<double> numbers = parse_numbers(text, option, 2, form);
@@ -107,8 +112,7 @@ void parse_into(double& value, const std::string& text, const Declaration& of) {
 }
 
 void parse_into(std::string& value, const std::string& text, const Declaration& of) {
-  if (text.empty()) throw InputError(spelled(of) + ": its value is empty");
-  value = text;
+  value = not_empty(text, spelled(of));
 }
 
 void parse_into(std::array<double, 2>& value, const std::string& text, const Declaration& of) {
@@ -145,18 +149,8 @@ std::string shown(double value) { return value > 0 ? fmt::format("{:g}", value) 
 std::string shown(const std::array<double, 2>& value) { return fmt::format("{:g},{:g}", value[0], value[1]); }
 
 Target into(std::string& text) {
-  return {[&text](const std::string& given, const std::string& name) {
-            if (given.empty()) throw InputError(name + ": its value is empty");
-            text = given;
-          },
+  return {[&text](const std::string& given, const std::string& name) { text = not_empty(given, name); },
           text};
-}
-
-Target into_positive(double& value, const std::string& quantity) {
-  return {[&value, quantity](const std::string& text, const std::string& name) {
-            value = parse_positive(text, name, quantity);
-          },
-          value > 0 ? fmt::format("{:g}", value) : ""};
 }
 
 }  // namespace podm::cli

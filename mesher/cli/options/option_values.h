@@ -66,10 +66,18 @@ using Merges = std::vector<LabelSelection::Merge>;
 
 /// The memory that the process may take.
 struct MemoryLimit {
-  std::uint64_t bytes = 0;  ///< 0: kPercentOfAvailableMemory of what is available
+  std::uint64_t bytes = 0;  ///< 0: kDefaultMemory
 };
 inline constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
-inline constexpr unsigned kPercentOfAvailableMemory = 80;
+/// The limit if none is given, as help shows it.
+inline constexpr const char* kDefaultMemory = "80 % of the available memory";
+/// The number at the start of `text`.
+constexpr unsigned leading_number(const char* text) {
+  unsigned number = 0;
+  for (; *text >= '0' && *text <= '9'; ++text) number = 10 * number + static_cast<unsigned>(*text - '0');
+  return number;
+}
+inline constexpr unsigned kPercentOfAvailableMemory = leading_number(kDefaultMemory);
 /// A number of GiB above 0 as bytes, at least one and not more than any machine has.
 std::uint64_t bytes_of_gib(double gib);
 
@@ -145,15 +153,6 @@ template <class Value, class Parse>
 Target into(Value& value, Parse parse, std::string default_text = "") {
   return {[&value, parse](const std::string& text, const std::string& name) { value = parse(text, name); },
           std::move(default_text)};
-}
-/// `quantity` describes the number: see parse_positive().
-Target into_positive(double& value, const std::string& quantity);
-template <Named Choice>
-Target into_choice(Choice& choice) {
-  return {[&choice](const std::string& text, const std::string& name) {
-            choice = parse_choice<Choice>(text, name);
-          },
-          to_string(choice)};
 }
 
 }  // namespace podm::cli

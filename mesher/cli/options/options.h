@@ -81,11 +81,11 @@ struct MeshCommand {
                "background by its value), e.g. liver,0=1:3; repeatable",
                {.unset = "none; WIDTH: MM", .uses = kOfPlaces, .not_on_ranks = kNoSizesByPlace}),
         option(&M::max_memory, "max-memory-gib", "GIB", kLimits, "memory of the process, GiB",
-               {.unset = "80 % of the available memory",
+               {.unset = kDefaultMemory,
                 .record = "max_memory_bytes",
                 .uses = kInPodm | kOnRanks | kInPython,
                 .quantity = "number of GiB",
-                .unset_on_ranks = "80 % of the available memory\nover the ranks of the machine"}),
+                .help_on_ranks = "memory of each process, GiB; the processes of a machine share the\ndefault"}),
         option(&M::mesh_path, "output", "MESH", kOutput,
                "mesh file: .vtu or .vtk (VTK), .msh (Gmsh), .xdmf (DOLFINx), .inp (Abaqus,\n"
                "CalculiX), .e or .exo (Exodus II), .mesh (Medit), .node or .ele (TetGen)",
@@ -164,7 +164,7 @@ struct InfoCommand {
 struct PhantomCommand {
   std::string name;
   int size = 128;  ///< voxels along the longest axis
-  std::string output_path;
+  std::string output_path, label_names_path;
 };
 
 /// The quantity that colours the cells of a picture.
@@ -213,7 +213,7 @@ struct ServeCommand {
                "largest image that the page may send, MiB", {.uses = kInPodm, .quantity = "number of MiB"}),
         option(&S::max_memory, "max-memory-gib", "GIB", kRun,
                "memory of each program that the page runs, GiB",
-               {.unset = "80 % of the available memory", .uses = kInPodm, .quantity = "number of GiB"}),
+               {.unset = kDefaultMemory, .uses = kInPodm, .quantity = "number of GiB"}),
         option(&S::max_seconds, "max-seconds", "S", kRun,
                "longest time of each program that the page runs, seconds; a mesh that\n"
                "reaches it is valid and coarse in places",

@@ -6,13 +6,14 @@ import inspect
 import json
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _podm
 from .checks import expect, is_label_value, path_bytes, text_bytes
 from .errors import Error, Interrupted
 from .images import is_file, voxels_and_affine
+from .keywords import TYPES, Option, default_of, options_of_mesh, options_of_plan
 from .result import Mesh
 
 if TYPE_CHECKING:
@@ -111,38 +112,29 @@ def _result(made: _podm.MeshInMemory | None, exception: BaseException | None) ->
     return result
 
 
-_OPTIONS = [option for option in json.loads(_podm.options())
-            if "python" in option["uses"] and option["keyword"] != "names"]
-_OF_PLAN = [option for option in _OPTIONS if "plan" in option["uses"] or option["group"] == "Labels"]
-
-TYPES = {"flag": bool, "choice": str | None, "real": float | None, "integer": int | None,
-         "file": str | os.PathLike[str] | None, "text": str | int | None, "two reals": tuple[float, float] | None,
-         "lengths of labels": Mapping[str | int, float] | None,
-         "lengths of pairs of labels": Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None,
-         "label values": str | int | Iterable[int] | None,
-         "names of label values": Mapping[str, str | int | Iterable[int]] | None}
-"""The type of a keyword, by the kind of its option."""
+_OPTIONS: list[Option] = json.loads(_podm.options())
+_OF_MESH, _OF_PLAN = options_of_mesh(_OPTIONS), options_of_plan(_OPTIONS)
+_GROUPS = list(dict.fromkeys(option["group"] for option in _OF_MESH))
 
 
 def _refuse_unknown(function: str, options: Mapping[str, Any]) -> None:
-    known = {option["keyword"] for option in (_OPTIONS if function == "mesh" else _OF_PLAN)}
+    known = {option["keyword"] for option in (_OF_MESH if function == "mesh" else _OF_PLAN)}
     for keyword in options:
         if keyword not in known:
             raise TypeError(f"{function}() got an unexpected keyword argument {keyword!r}")
 
 
-def _declare(function: Callable[..., Any], options: Iterable[Mapping[str, Any]]) -> None:
+def _declare(function: Callable[..., Any], options: list[Option]) -> None:
     """Gives a function the signature and the description of its options."""
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
-    keywords = [inspect.Parameter(option["keyword"], inspect.Parameter.KEYWORD_ONLY,
-                                  default=False if option["kind"] == "flag" else None,
+    keywords = [inspect.Parameter(option["keyword"], inspect.Parameter.KEYWORD_ONLY, default=default_of(option),
                                   annotation=TYPES[option["kind"]]) for option in options]
     function.__signature__ = signature.replace(parameters=own + keywords)  # type: ignore[attr-defined]
     function.__doc__ = f"{function.__doc__}\n    Options and their defaults:\n{_options_text(options)}\n"
 
 
-def _options_text(options: Iterable[Mapping[str, Any]]) -> str:
+def _options_text(options: list[Option]) -> str:
     lines, group = [], ""
     for option in sorted(options, key=lambda option: _GROUPS.index(option["group"])):
         if option["group"] != group:
@@ -155,11 +147,10 @@ def _options_text(options: Iterable[Mapping[str, Any]]) -> str:
 
 
 def _in_keywords(text: str) -> str:
-    for option in json.loads(_podm.options()):
+    for option in _OPTIONS:
         text = text.replace("--" + option["name"], option["keyword"])
     return text
 
 
-_GROUPS = list(dict.fromkeys(option["group"] for option in _OPTIONS))
-_declare(mesh, _OPTIONS)
+_declare(mesh, _OF_MESH)
 _declare(plan, _OF_PLAN)

@@ -206,10 +206,9 @@ TEST(LabelSearch, FindsNothingWhereThereIsNothing) {
   const Image image = full_box(kUnitAffine);
   const LabelSearch search(image);
   std::uint64_t num_exact = 0;
-  EXPECT_FALSE(search.find(
-      {5, 5, 5}, [](std::uint32_t label) { return label != 1; }, 3, num_exact));
-  EXPECT_TRUE(search.find(
-      {5, 5, 5}, [](std::uint32_t label) { return label == 1; }, 3, num_exact));
+  const auto is_background = [](std::uint32_t label) { return label == 0; };
+  EXPECT_FALSE(search.find({5, 5, 5}, is_background, 3, num_exact));
+  EXPECT_TRUE(search.find({5, 5, 5}, is_background, 30, num_exact));
 }
 
 TEST(LabelReach, BeyondTheGridIsBackground) {
