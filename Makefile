@@ -12,8 +12,8 @@ PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build install python peers test stress kill-matrix audit docs kick-tires experiments figures corpus \
-  clean
+.PHONY: help setup build install python wheel sdist deb peers test stress kill-matrix audit docs kick-tires \
+  experiments figures corpus clean
 
 help:
 	@echo "make kick-tires    run every experiment at its smallest size, in a few minutes; tables and results/runs/"
@@ -33,11 +33,14 @@ help:
 	@echo "make build         the programs, in build/bin/"
 	@echo "make python        the Python package podm, in build/python/"
 	@echo "make install       the programs, their scripts and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: under it)"
+	@echo "make wheel         dist/podmark-*.whl, which pip installs on any Linux with glibc: programs and Python package"
+	@echo "make sdist         dist/podmark-*.tar.gz, the sources, which pip builds where \`make python\` works"
+	@echo "make deb           dist/*.deb, packages of Debian 12: podmark, podmark-mpi, podmark-dev, python3-podm"
 	@echo "make peers         the other programs that \`make experiments\` uses: TetGen, Gmsh and likwid as packages, and"
 	@echo "                   CGAL's mesher (GPL, compiles for about 3 minutes, stays in build/bin/); CGAL6=FOLDER: also"
 	@echo "                   the mesher of the CGAL 6 whose headers are in FOLDER/include"
 	@echo "make setup         install the Debian 12 packages for all of these (root or sudo; otherwise prints what to run)"
-	@echo "make clean         remove the build folders; results stay"
+	@echo "make clean         remove the build folders and dist/; results stay"
 	@echo
 	@echo "Each target makes its prerequisites, including setup and build."
 	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 or ARMv8 processor"
@@ -57,6 +60,19 @@ python:
 	@scripts/setup build python
 	$(CONFIGURE)
 	cmake --build build --target podm_python_package
+
+# The programs are linked again, with libraries that are made once and stay in build-wheel/.
+wheel: build python
+	@scripts/setup packaging
+	scripts/packaging/libraries build-wheel
+	scripts/packaging/make_wheel
+
+sdist:
+	scripts/packaging/make_sdist
+
+deb: build python
+	@scripts/setup packaging
+	scripts/packaging/make_deb
 
 # DESTDIR, from the environment or the command line, is put before PREFIX.
 install: build
@@ -125,4 +141,4 @@ corpus: build
 	scripts/report --records results/runs/corpus.jsonl -o results/runs/corpus.html
 
 clean:
-	rm -rf build build-*
+	rm -rf build build-* dist

@@ -1,5 +1,5 @@
 # podm_manual(PROGRAMS...): makes their manual pages and shell completions in share/ of the build folder from their
-# --help output, and installs them. Those of podm-bench are not installed, as it stays with its experiments.
+# --help output, and installs them.
 function(podm_manual)
   find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
   set(share ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR})
@@ -16,8 +16,6 @@ function(podm_manual)
                      COMMAND ${PODM_SYSTEM_PYTHON} -B ${maker} --output ${share} ${programs}
                      DEPENDS ${ARGN} ${maker} ${sources} VERBATIM COMMENT "Manual pages and shell completions")
   add_custom_target(manual ALL DEPENDS ${pages} ${completions})
-  list(FILTER pages EXCLUDE REGEX podm-bench)
-  list(FILTER completions EXCLUDE REGEX podm-bench)
-  install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${completions} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT pages)
+  install(FILES ${completions} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT pages)
 endfunction()

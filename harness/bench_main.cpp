@@ -4,29 +4,25 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "experiments/commands.h"
 #include "gate/gate_command.h"
 #include "machine/commands.h"
+#include "process/share.h"
 #include "submissions/commands.h"
 
 namespace podm::bench {
 namespace {
 
-std::string beside_this_program(const char* name) {
-  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
-}
-
 Programs default_programs() {
   return {beside_this_program("podm"),
           beside_this_program("podm-verify"),
-          PODM_PEERS,
+          share_of_this_program("peers"),
           beside_this_program("podm-bench"),
-          PODM_LIKWID_GROUPS,
-          PODM_SOLVER};
+          share_of_this_program("likwid"),
+          share_of_this_program("solvers/dolfinx/run")};
 }
 
 // Adds an option whose value help shows as `type`.
@@ -41,7 +37,7 @@ void add_programs(CLI::App& app, Programs& programs) {
   add_option(app, "--verifier", "FILE", programs.verifier,
              "file of the verifier, or none [default: podm-verify beside this program]");
   add_option(app, "--peers", "FOLDER", programs.peers,
-             "folder of other meshers [default: harness/peers of the sources]");
+             "folder of other meshers [default: those that come with this program]");
 }
 
 // Adds the command. Sets `exit_code` when the command was chosen and has ended.

@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "errors.h"
+#include "process/share.h"
 
 namespace podm::bench {
 namespace {
@@ -86,9 +87,10 @@ std::int64_t most_of(const Json& option) {
 // The options of podm that experiments may set, as the program declares them: `podm options`, written by the
 // build.
 std::vector<MesherOption> options_of_podm() {
-  std::ifstream file(PODM_OPTIONS);
+  const std::string path = share_of_this_program("podm_options.json");
+  std::ifstream file(path);
   const Json declared = Json::parse(file, nullptr, false);
-  if (!declared.is_array()) throw InputError(PODM_OPTIONS ": not the output of `podm options`");
+  if (!declared.is_array()) throw InputError(path + ": not the output of `podm options`");
   std::vector<MesherOption> options;
   for (const Json& option : declared)
     if (is_among(option.at("uses"), "experiments"))

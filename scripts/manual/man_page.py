@@ -77,7 +77,7 @@ def page(program, all_names):
         lines += [heading("SS", f"{program.name} {name}"), escaped(parsed.description),
                   *entries_lines(parsed), *paragraphs(parsed)]
     lines += exit_codes(program)
-    others = [name for name in all_names if name not in (program.name, "podm-bench")]  # its page is not installed
+    others = [name for name in all_names if name != program.name]
     if others:
         lines += [heading("SH", "SEE ALSO"), ", ".join(rf"\fB{escaped(name)}\fR(1)" for name in others)]
     return "\n".join(lines) + "\n"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <vector>
 
 #include "cli/processes/child_process.h"
@@ -12,17 +13,27 @@
 namespace podm::cli {
 namespace {
 
-constexpr const char* kPython = "/usr/bin/python3";  // the interpreter that finds Debian's modules
+// Returns the interpreter. By default it is the one that finds Debian's modules. The variable is set by the programs
+// that pip installs, and names the interpreter that finds pip's modules.
+std::string python() {
+  const char* const chosen = std::getenv("PODM_PYTHON");
+  return chosen != nullptr ? chosen : "/usr/bin/python3";
+}
 
 std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
   const auto folder = folder_of_own_program().parent_path();
   const std::string path = (folder / PODM_SHARE / script).string();
-  if (!can_be_run(kPython))
-    throw InputError(fmt::format("{}: {} is missing; install Debian's python3", asked_by, kPython));
+  if (!can_be_run(python()))
+    throw InputError(
+        fmt::format("{}: {} is missing; install Debian's python3, or set PODM_PYTHON", asked_by, python()));
   if (::access(path.c_str(), R_OK) != 0)
     throw InputError(
         fmt::format("{}: {} is missing; the installation of podm is incomplete", asked_by, path));
-  return {kPython, "-E", "-s", "-B", path};
+  // Modules that pip installed for this user only are a user's own choice.
+  std::vector<std::string> command{python(), "-E", "-B"};
+  if (std::getenv("PODM_PYTHON") == nullptr) command.emplace_back("-s");
+  command.push_back(path);
+  return command;
 }
 
 }  // namespace

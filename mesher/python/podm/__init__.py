@@ -17,6 +17,10 @@ Delaunay; boundary and interface facets have angles above 30 degrees and vertice
 gets a `Progress`.
 """
 
+from .processor import check_processor
+
+check_processor()  # before an instruction of the extension module runs
+
 from ._podm import Progress, __version__
 from .errors import Error, InternalError, Interrupted
 from .meshing import mesh, plan

@@ -61,10 +61,10 @@ def verify(mesh: Mesh, made: MeshInMemory, fidelity: bool) -> Verification:
 
 
 def _verifier() -> str:
-    beside = pathlib.Path(__file__).with_name("podm-verify")
-    program = str(beside) if beside.exists() else shutil.which("podm-verify")
+    own = pathlib.Path(__file__).parent / "bin" / "podm-verify"
+    program = str(own) if own.exists() else shutil.which("podm-verify")
     if program is None:
-        raise Error(f"podm-verify: it is neither beside {beside.parent} nor on the PATH")
+        raise Error(f"podm-verify: it is neither in {own.parent} nor on the PATH")
     return program
 
 

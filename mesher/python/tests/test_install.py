@@ -7,6 +7,8 @@ import sys
 import tempfile
 import unittest
 
+from podm.processor import check_processor
+
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 CODE = """
 import pathlib, numpy as np, podm
@@ -14,7 +16,8 @@ image = np.zeros((12, 12, 12), np.uint8)
 image[3:9, 3:9, 3:9] = 1
 mesh = podm.mesh(image)
 assert mesh.verify(), mesh.verify().text
-assert pathlib.Path(podm.__file__).with_name("py.typed").exists()
+folder = pathlib.Path(podm.__file__).parent
+assert (folder / "py.typed").exists() and (folder / "meshing.pyi").exists()
 print(podm.__file__)
 """
 
@@ -24,6 +27,17 @@ def files_of_source():
 
 
 class InstallTest(unittest.TestCase):
+    def test_a_processor_without_the_instructions_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "cpuinfo")
+            for flags, is_refused in (("fpu sse4_2 avx", True), ("fpu avx avx2 bmi1 bmi2 fma", False), ("", False)):
+                path.write_text(f"processor: 0\nmodel name: x\n{flags and 'flags: ' + flags}\n")
+                if is_refused:
+                    self.assertRaisesRegex(ImportError, "no avx2, bmi1, bmi2, fma;", check_processor, path)
+                else:
+                    check_processor(path)
+            check_processor(path.with_name("none"))
+
     def test_pip_installs_what_meshes_and_verifies(self):
         before = files_of_source()
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
@@ -37,6 +51,10 @@ class InstallTest(unittest.TestCase):
                                      check=False)
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertTrue(process.stdout.startswith(os.path.realpath(folder)), process.stdout)
+            for program in ("podm", "podm-verify", "podm-bench"):
+                said = subprocess.run([pathlib.Path(folder, "bin", program), "--version"], env=environment, check=True,
+                                      capture_output=True, text=True).stdout
+                self.assertTrue(said.startswith(f"{program} "), said)
         self.assertEqual(files_of_source(), before)
 
 

@@ -1,0 +1,86 @@
+"""The version and the metadata of the packages have one place, and make_wheel refuses what would not run elsewhere."""
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import tempfile
+import unittest
+from pathlib import Path
+
+PACKAGING = Path(__file__).resolve().parents[1]
+ROOT = PACKAGING.parents[1]
+BUILD = Path(os.environ.get("PODM_BUILD", ROOT / "build"))
+sys.path[:0] = [str(PACKAGING)]
+
+from podm_wheel import binary, wheel  # noqa: E402
+from podm_wheel.build_tree import BuildTree  # noqa: E402
+
+VERSION = re.search(r"^project\(podm VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)[1]
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+
+class Version(InFolder):
+    def test_all_places_have_that_of_cmake(self):
+        self.assertIn(f"\nversion: {VERSION}\n", (ROOT / "CITATION.cff").read_text())
+        newest = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
+        self.assertEqual(newest.rstrip(","), VERSION)
+        self.assertEqual(BuildTree(BUILD).version(), VERSION)
+
+    def test_the_metadata_have_it_and_name_the_licence(self):
+        info = wheel.metadata(ROOT, self.folder)
+        self.assertEqual(info.name, f"podmark-{VERSION}.dist-info")
+        text = (info / "METADATA").read_text()
+        self.assertIn(f"\nName: podmark\nVersion: {VERSION}\n", text)
+        self.assertIn("\nLicense: BSD-3-Clause\n", text)
+        self.assertIn("\nRequires-Dist: numpy\n", text)
+
+
+class Sources(InFolder):
+    def test_the_archive_has_what_pip_needs(self):
+        done = subprocess.run([PACKAGING / "make_sdist", "--output", self.folder], capture_output=True, text=True)
+        if "not a git repository" in done.stderr:
+            self.skipTest("skipped: not a git checkout")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with tarfile.open(self.folder / f"podmark-{VERSION}.tar.gz") as archive:
+            names = {name.removeprefix(f"podmark-{VERSION}/") for name in archive.getnames()}
+        self.assertLessEqual({"PKG-INFO", "setup.py", "pyproject.toml", "CMakeLists.txt", "LICENSE", "mesher/main.cpp",
+                              "verifiers/main.cpp", "scripts/view", "mesher/python/podm/__init__.py"}, names)
+        self.assertFalse([name for name in names if name.startswith(("results/", "build"))])
+
+
+class Binaries(unittest.TestCase):
+    def test_a_program_that_needs_packages_is_refused(self):
+        program = BUILD / "bin/podm"
+        self.assertTrue(any("ITK" in name for name in binary.needed(program)))
+        with self.assertRaisesRegex(binary.Unportable, "libITK"):
+            binary.check(program)
+
+    def test_a_path_outside_the_wheel_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source, program = Path(folder, "a.c"), Path(folder, "a")
+            source.write_text("int main(void) { return 0; }\n")
+            for path, is_refused in (("$ORIGIN/../libs", False), ("/opt/lib", True)):
+                subprocess.run(["gcc", source, "-o", program, f"-Wl,-rpath,{path}"], check=True)
+                if is_refused:
+                    self.assertRaisesRegex(binary.Unportable, path, binary.check, program)
+                else:
+                    binary.check(program)
+
+    def test_the_parts_of_a_program_are_those_of_the_project(self):
+        parts = BuildTree(BUILD).parts_of("bin/podm-verify")
+        self.assertTrue(parts)
+        for part in parts:
+            self.assertTrue(part.is_file(), part)
+            self.assertIn(BUILD, part.parents)
+        self.assertIn("libpodm_verify_claims.a", {part.name for part in parts})
+
+
+if __name__ == "__main__":
+    unittest.main()
