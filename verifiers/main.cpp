@@ -27,7 +27,7 @@ constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
 struct Command {
   Options options;
   std::vector<std::string> radius_of, size_near, merges;
-  std::string claims, space, labels, drop;
+  std::string claims, space, labels, drop, layers;
   bool quiet = false;
 };
 
@@ -89,6 +89,10 @@ void declare_selection(CLI::App& app, Command& command) {
   add_option(app, "--merge", "VALUES=NAME", command.merges,
              "merge label values into the first, e.g. 2,3=kidney; repeatable [default: none]")
       ->allow_extra_args(false)
+      ->needs(image);
+  add_option(app, "--layers", "LAYERS", command.layers,
+             "layers of a .seg.nrrd of 3D Slicer that are read, from bottom to top, e.g. 1,0\n"
+             "[default: all, later segments above earlier ones]")
       ->needs(image);
   add_option(app, "--drop-islands", "MM3", command.options.selection.drop_islands_mm3,
              "components of a label below this volume, mm^3, join a neighbour [default: none]")
@@ -233,6 +237,7 @@ void finish_options(Command& command) {
     options.interface_sizes.push_back(parse_interface_size(text));
   if (!command.labels.empty()) options.selection.keep = parse_label_ranges(command.labels, "--labels");
   if (!command.drop.empty()) options.selection.drop = parse_label_ranges(command.drop, "--drop");
+  if (!command.layers.empty()) options.selection.layers = parse_layers(command.layers, "--layers");
   for (const std::string& text : command.merges) options.selection.merges.push_back(parse_merge(text));
   const std::string& bad = options.extract_bad_path;
   if (!bad.empty() && !bad.ends_with(".vtu"))

@@ -36,7 +36,8 @@ struct Mesh {
   std::vector<std::array<VertexId, 3>> facets;          ///< triangles listed by the file; may be empty
   std::vector<std::array<LabelValue, 2>> facet_labels;  ///< one per facet, or empty
   std::map<LabelValue, std::string> label_names;        ///< as far as the file names them
-  std::map<std::string, std::size_t> other_cells;       ///< cells that are neither tetrahedra nor triangles
+  std::map<LabelValue, std::array<std::uint8_t, 3>> label_colours;  ///< red, green, blue, of those with one
+  std::map<std::string, std::size_t> other_cells;  ///< cells that are neither tetrahedra nor triangles
   Space space = Space::kUnstated;
   std::set<std::string> unclaimed;  ///< claims that the file states not to make
   std::optional<std::array<double, 2>>

@@ -130,7 +130,7 @@ std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh)
 Inputs read_inputs(const Options& options) {
   Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt, std::nullopt};
   if (options.space) inputs.mesh.space = *options.space;
-  if (!options.image_path.empty()) inputs.image = read_image(options.image_path);
+  if (!options.image_path.empty()) inputs.image = read_image(options.image_path, options.selection);
   if (!options.size_image_path.empty()) inputs.sizes = read_size_image(options.size_image_path);
   if (inputs.image && options.selection != LabelSelection{}) select_labels(*inputs.image, options.selection);
   const std::optional<double> width = options.smooth_mm ? options.smooth_mm : inputs.mesh.smoothing_mm;

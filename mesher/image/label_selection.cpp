@@ -81,6 +81,8 @@ class SelectedLabels {
   SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path,
                  std::size_t threads)
       : path_(path), background_(selection.background), present_(values_with_voxels(image, threads)) {
+    for (const Segment& segment : image.segments)
+      if (segment.covered > 0) covered_.insert(segment.label.value);
     expect_labels(selection.keep, spelled("labels", "keep"));
     expect_labels(selection.drop, spelled("drop"));
     std::set<std::uint32_t> merged;
@@ -91,14 +93,15 @@ class SelectedLabels {
           refuse(path, spelled("merge") + ": label " + std::to_string(value) + " is merged twice");
       }
     for (const Label& label : image.labels)
-      if (present_.contains(label.value) && label.value != background_ &&
-          !covers(selection.drop, label.value) &&
-          (selection.keep.empty() || covers(selection.keep, label.value)))
+      if (present_.contains(label.value) && label.value != background_ && is_kept(selection, label.value))
         becomes_[label.value] = label;
-    for (const LabelSelection::Merge& merge : selection.merges)
+    for (const LabelSelection::Merge& merge : selection.merges) {
+      const auto first = becomes_.find(merge.values.front());
+      const auto colour = first == becomes_.end() ? std::nullopt : first->second.colour;
       for (const std::uint32_t value : merge.values)
         if (const auto kept = becomes_.find(value); kept != becomes_.end())
-          kept->second = {merge.values.front(), merge.name};
+          kept->second = {merge.values.front(), merge.name, colour};
+    }
   }
 
   const std::map<std::uint32_t, Label>& by_value() const { return becomes_; }
@@ -107,7 +110,7 @@ class SelectedLabels {
   void expect_label(std::uint32_t value, const std::string& option) const {
     const std::string label = option + ": label " + std::to_string(value);
     if (value == background_) refuse(path_, label + " is the background");
-    if (!present_.contains(value)) refuse(path_, label + " is not in the image");
+    if (!present_.contains(value) && !covered_.contains(value)) refuse(path_, label + " is not in the image");
   }
   void expect_labels(const std::vector<Range>& ranges, const std::string& option) const {
     for (const auto& [first, last] : ranges)
@@ -117,10 +120,33 @@ class SelectedLabels {
   const std::string& path_;
   std::uint32_t background_;
   std::set<std::uint32_t> present_;
+  std::set<std::uint32_t> covered_;  // by other segments, perhaps entirely
   std::map<std::uint32_t, Label> becomes_;
 };
 
+// Gives the labels, the segments and the background the names and colours of a table.
+void take_names(LabelImage& image, const LabelSelection& selection) {
+  const auto is_background = [&](const Label& label) { return label.value == selection.background; };
+  if (std::none_of(image.labels.begin(), image.labels.end(), is_background))
+    image.labels.push_back({selection.background, {}});
+  std::map<std::uint32_t, const Label*> entries;
+  for (const Label& entry : selection.table) entries[entry.value] = &entry;
+  const auto take = [&](Label& label) {
+    const auto found = entries.find(label.value);
+    if (found == entries.end()) return;
+    label.name = found->second->name;
+    if (found->second->colour) label.colour = found->second->colour;
+  };
+  for (Label& label : image.labels) take(label);
+  for (Segment& segment : image.segments) take(segment.label);
+}
+
 }  // namespace
+
+bool is_kept(const LabelSelection& selection, std::uint32_t value) {
+  return value == selection.background ||
+         (!covers(selection.drop, value) && (selection.keep.empty() || covers(selection.keep, value)));
+}
 
 std::vector<Range> parse_label_ranges(const std::string& text, const std::string& option) {
   std::vector<Range> ranges;
@@ -136,6 +162,20 @@ std::vector<Range> parse_label_ranges(const std::string& text, const std::string
   return ranges;
 }
 
+LayerOrder parse_layers(const std::string& text, const std::string& option) {
+  LayerOrder layers;
+  for (const std::string_view part : split_at_commas(text)) {
+    std::size_t layer = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), layer);
+    if (error != std::errc{} || end != part.data() + part.size())
+      throw InputError(option + ": '" + std::string(part) + "' is not a layer (an integer from 0)");
+    if (std::find(layers.begin(), layers.end(), layer) != layers.end())
+      throw InputError(option + ": layer " + std::to_string(layer) + " is given twice");
+    layers.push_back(layer);
+  }
+  return layers;
+}
+
 LabelSelection::Merge parse_merge(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
@@ -149,18 +189,21 @@ LabelSelection::Merge parse_merge(const std::string& text) {
 
 void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
                    std::size_t threads) {
+  take_names(image, selection);
   const SelectedLabels selected(image, selection, path, threads);
-  std::map<std::uint32_t, std::string> names;  // of the final labels, by value
-  for (const auto& [value, label] : selected.by_value()) names[label.value] = label.name;
-  if (names.empty()) refuse(path, "no foreground: every voxel is background or deselected");
-  if (names.size() >= kMaxLabels)
+  std::map<std::uint32_t, Label> final_labels;  // by value
+  for (const auto& [value, label] : selected.by_value()) final_labels[label.value] = label;
+  if (final_labels.empty()) refuse(path, "no foreground: every voxel is background or deselected");
+  if (final_labels.size() >= kMaxLabels)
     refuse(path, "a label image is needed: more than " + std::to_string(kMaxLabels - 1) + " labels");
 
-  std::vector<Label> labels{{selection.background, {}}};
+  std::vector<Label> labels{*std::find_if(image.labels.begin(), image.labels.end(), [&](const Label& label) {
+    return label.value == selection.background;
+  })};
   std::map<std::uint32_t, LabelIndex> new_index;
-  for (const auto& [value, name] : names) {
+  for (const auto& [value, label] : final_labels) {
     new_index[value] = static_cast<LabelIndex>(labels.size());
-    labels.push_back({value, name});
+    labels.push_back(label);
   }
   std::vector<LabelIndex> replacement(image.labels.size(), kBackground);
   for (std::size_t i = 0; i < replacement.size(); ++i)

@@ -7,10 +7,14 @@
 
 namespace podm {
 
+/// True if the selection keeps the value and does not drop it. The background counts as kept.
+bool is_kept(const LabelSelection& selection, std::uint32_t value);
+
 /// Takes an image whose voxels index `labels` in any order. Leaves the background first, followed by the
-/// labels that have voxels and that the selection keeps, by value. Keeping and dropping come before merging;
-/// islands are dropped last. Throws InputError naming `path` if a value that is given by itself is absent, a
-/// merge is contradictory, the volume of islands is invalid, or nothing is left.
+/// labels that have voxels and that the selection keeps, by value. Names and colours of the table come first,
+/// then keeping and dropping, then merging; islands are dropped last. Throws InputError naming `path` if a
+/// value that is given by itself is absent, a merge is contradictory, the volume of islands is invalid, or
+/// nothing is left.
 void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
                    std::size_t threads);
 

@@ -20,8 +20,9 @@ using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 constexpr double kHeaderRounding = 1e-5;
 constexpr double kSmallestDeterminant = 1e-6;  // of three unit axes
 constexpr double kSmallestSpacing = 1e-30,
-                 kLargestSpacing = 1e30;    // their fifth powers neither overflow nor underflow
-constexpr double kFurthestVoxels = 0x1p33;  // up to here doubles resolve a millionth of a voxel
+                 kLargestSpacing = 1e30;        // their fifth powers neither overflow nor underflow
+constexpr std::size_t kMaxLayers = kMaxLabels;  // the bytes of all layers then fit 64 bits
+constexpr double kFurthestVoxels = 0x1p33;      // up to here doubles resolve a millionth of a voxel
 
 double determinant(const Matrix& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -112,8 +113,13 @@ void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most
 }
 
 std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes) {
-  const std::size_t voxels = checked_num_voxels(raw.path, raw.size), needed = voxels * bytes_of(raw.type);
-  check_room(raw.path, needed + voxels * sizeof(LabelIndex), most_bytes);
+  const std::size_t voxels = checked_num_voxels(raw.path, raw.size);
+  if (raw.num_layers > kMaxLayers)
+    refuse(raw.path, std::to_string(raw.num_layers) + " layers, at most " + std::to_string(kMaxLayers) +
+                         " are supported");
+  const std::size_t needed = voxels * raw.num_layers * bytes_of(raw.type);
+  check_room(raw.path, needed + voxels * (raw.num_layers > 1 ? sizeof(std::uint32_t) : sizeof(LabelIndex)),
+             most_bytes);
   return needed;
 }
 

@@ -32,6 +32,8 @@ struct RawImage {
   double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest, this machine's byte order
+  std::size_t num_layers = 1;              ///< values per voxel, one behind the other
+  std::vector<Segment> segments = {};      ///< of a segmentation of 3D Slicer; several layers have segments
   std::vector<std::string> warnings = {};  ///< are copied to the LabelImage
 };
 
@@ -52,7 +54,8 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
 void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most_bytes);
 
 /// The bytes of all voxels, checked as above before any memory is allocated. Throws InputError if the voxels
-/// and their labels take more than `most_bytes` while they are read.
+/// and their labels take more than `most_bytes` while they are read. Layers are first merged to labels of up
+/// to four bytes.
 std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes);
 
 /// The voxel spacing, mm. Axes that are orthogonal except for the rounding of the file's header are made

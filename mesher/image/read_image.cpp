@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <map>
+#include <utility>
 
 #include "image/index_voxels.h"
 #include "image/label_selection.h"
+#include "image/merge_layers.h"
 #include "image/read_formats.h"
 #include "podm/image_io.h"
 #include "runtime/parallel_for.h"
@@ -32,13 +35,30 @@ LabelImage index_array(const VoxelArray& array, std::array<double, 12> voxel_to_
   return image;
 }
 
-LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t most_bytes) {
-  const RawImage raw = read_raw(path, most_bytes);
+// Labels with the name and the colour of their segment.
+void name_by_segments(LabelImage& image) {
+  std::map<std::uint32_t, const Label*> labels;
+  for (const Segment& segment : image.segments) labels[segment.label.value] = &segment.label;
+  for (Label& label : image.labels)
+    if (const auto found = labels.find(label.value); found != labels.end()) label = *found->second;
+}
+
+LabelImage read_file(const std::string& path, const LabelSelection& selection, std::size_t threads,
+                     std::uint64_t most_bytes) {
+  RawImage raw = read_raw(path, most_bytes);
   if (raw.slope != 1 || raw.intercept != 0)
     refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
+  check_layers(path, selection, raw.segments.size(), raw.num_layers);
+  merge_layers(raw, selection, threads);
   LabelImage image = index_array(array_of(raw), raw.voxel_to_ras, path, threads);
-  image.warnings = raw.warnings;
+  image.warnings = std::move(raw.warnings);
+  image.segments = std::move(raw.segments);
+  name_by_segments(image);
   return image;
+}
+
+void refuse_layers(const std::string& path, const LabelSelection& selection) {
+  check_layers(path, selection, 0, 1);
 }
 
 LabelImage read_phantom(const std::string& spec, int threads) {
@@ -64,8 +84,9 @@ RawImage read_raw(const std::string& path, std::uint64_t most_bytes) {
 LabelImage read_image(const std::string& path, const LabelSelection& selection, int threads,
                       std::uint64_t most_bytes) {
   const std::size_t used = num_threads(threads);
-  LabelImage image =
-      path.starts_with("phantom:") ? read_phantom(path, threads) : read_file(path, used, most_bytes);
+  const bool is_phantom = path.starts_with("phantom:");
+  if (is_phantom) refuse_layers(path, selection);
+  LabelImage image = is_phantom ? read_phantom(path, threads) : read_file(path, selection, used, most_bytes);
   select_labels(image, selection, path, used);
   return image;
 }
@@ -74,6 +95,7 @@ LabelImage image_of_array(const VoxelArray& array, std::array<double, 12> voxel_
                           const std::string& name, const LabelSelection& selection, int threads,
                           std::uint64_t most_bytes) {
   const std::size_t used = num_threads(threads);
+  refuse_layers(name, selection);
   check_room(name, checked_num_voxels(name, array.size) * sizeof(LabelIndex), most_bytes);
   LabelImage image = index_array(array, voxel_to_ras, name, used);
   select_labels(image, selection, name, used);

@@ -1,14 +1,18 @@
 // Reads NRRD and MetaImage through ITK's readers. The true size of the voxel data is checked first.
+// The layers of a segmentation of 3D Slicer are the components of a vector for ITK, which puts them first.
 // Compressed voxels of a MetaImage are read here: ITK reads as many bytes as the header announces, whatever
 // the stream needs. If another program has changed the image, the header may still announce the old number.
+#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <map>
 
 #include "image/read_formats.h"
+#include "image/segments.h"
 #include "image/voxel_data.h"
 
 namespace podm {
@@ -22,11 +26,19 @@ itk::ImageIOBase::Pointer reader_for(const std::string& path) {
   return itk::MetaImageIO::New().GetPointer();
 }
 
+// Sets the layers, which are components for ITK, and their segments.
+void read_layers(RawImage& raw, const itk::ImageIOBase& io) {
+  raw.num_layers = io.GetNumberOfComponents();
+  std::map<std::string, std::string> fields;
+  const itk::MetaDataDictionary& header = io.GetMetaDataDictionary();
+  for (const std::string& key : header.GetKeys())
+    if (std::string text; itk::ExposeMetaData(header, key, text)) fields[key] = text;
+  if (is_nrrd(raw.path)) raw.segments = parse_segments(raw.path, fields, raw.num_layers);
+  if (raw.num_layers != 1 && raw.segments.empty())
+    refuse(raw.path, "one value per voxel is needed, this image has " + std::to_string(raw.num_layers));
+}
+
 VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
-  if (io.GetNumberOfComponents() != 1) {
-    refuse(path,
-           "one value per voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
-  }
   switch (io.GetComponentType()) {
     case itk::ImageIOBase::UCHAR:
       return VoxelType::kUint8;
@@ -114,6 +126,7 @@ RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
       raw.size.push_back(
           static_cast<int>(std::min<itk::SizeValueType>(io->GetDimensions(axis), kLongestAxis)));
     }
+    read_layers(raw, *io);
     raw.type = voxel_type(path, *io);
     const std::size_t needed = checked_num_bytes(raw, most_bytes);
     if (data.is_compressed && !is_nrrd(path)) {

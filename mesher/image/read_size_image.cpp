@@ -41,6 +41,8 @@ SizeImage read_size_image(const std::string& path, std::uint64_t most_bytes) {
   check_room(path, raw.bytes.size() + raw.bytes.size() / bytes_of(raw.type) * sizeof(float), most_bytes);
   checked_spacing(path, raw.voxel_to_ras);
   check_distance(path, raw.size, raw.voxel_to_ras);
+  if (raw.num_layers != 1)
+    refuse(path, "one value per voxel is needed, this image has " + std::to_string(raw.num_layers));
   SizeImage image{.path = path,
                   .size = {raw.size[0], raw.size[1], raw.size[2]},
                   .voxel_to_ras = raw.voxel_to_ras,

@@ -59,6 +59,14 @@ std::string LabelNames::of_pair(const LabelPair& pair) const {
   return names_[pair[1]] + "|" + names_[pair[0]];
 }
 
+std::vector<std::array<std::uint32_t, 4>> colours_of(const std::vector<Label>& labels) {
+  std::vector<std::array<std::uint32_t, 4>> colours;
+  for (std::size_t i = 1; i < labels.size(); ++i)
+    if (const auto& colour = labels[i].colour)
+      colours.push_back({labels[i].value, (*colour)[0], (*colour)[1], (*colour)[2]});
+  return colours;
+}
+
 LabelPairs::LabelPairs(const std::vector<LabelPair>& facet_labels) {
   for (const LabelPair& pair : facet_labels)
     if (pairs_.empty() || pairs_.back() != pair) pairs_.push_back(pair);

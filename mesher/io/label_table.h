@@ -1,7 +1,9 @@
-// The labels in mesh files: a printable name for each, and the pairs of labels that facets separate.
+// The labels in mesh files: a printable name for each, their colours, and the pairs of labels that facets
+// separate.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,11 @@ class LabelNames {
  private:
   std::vector<std::string> names_;
 };
+
+/// The name of the array of colours in VTK's files, and its numbers: value, red, green and blue of each label
+/// that has a colour, without the background.
+inline constexpr const char* kColourArray = "label_colours";
+std::vector<std::array<std::uint32_t, 4>> colours_of(const std::vector<Label>& labels);
 
 /// The distinct pairs among the facets of a mesh, sorted; a pair's number is its position.
 class LabelPairs {

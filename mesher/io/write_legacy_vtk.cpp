@@ -31,19 +31,24 @@ std::string percent_encoded(const std::string& name) {
   return text;
 }
 
-// Writes one number per array, with the text in the array's name, as in VTU.
+// Writes one number per array, with the text in the array's name, and the colours of labels, as in VTU.
 void put_field_data(const TetMesh& mesh, AtomicFile& file) {
   const LabelNames names(mesh.labels);
   std::vector<std::pair<std::string, std::uint32_t>> arrays{{"space:" + to_string(mesh.space), 1}};
   for (const std::string& promise : promises_of(mesh)) arrays.emplace_back("promise:" + promise, 1);
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     arrays.emplace_back("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
-  file.write(fmt::format("FIELD FieldData {}\n", arrays.size()));
+  const auto colours = colours_of(mesh.labels);
+  file.write(fmt::format("FIELD FieldData {}\n", arrays.size() + (colours.empty() ? 0 : 1)));
   for (const auto& [name, value] : arrays) {
     file.write(fmt::format("{} 1 1 unsigned_int\n", percent_encoded(name)));
     put_big_endian(file, value);
     file.write("\n");
   }
+  if (colours.empty()) return;
+  file.write(fmt::format("{} 4 {} unsigned_int\n", kColourArray, colours.size()));
+  for (const auto& colour : colours) put_big_endian(file, colour);
+  file.write("\n");
 }
 
 void put_head(const TetMesh& mesh, AtomicFile& file) {

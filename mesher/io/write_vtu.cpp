@@ -4,6 +4,7 @@
 // bytes (UInt64) and its values. Cells and facets go to two files, because readers of tetrahedra (FEniCS,
 // PyVista filters, solvers) fail on grids of mixed dimension.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <filesystem>
@@ -83,8 +84,8 @@ void add_cells(std::size_t count, int vertices_per_cell, int cell_type, bool wid
       make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));
 }
 
-// Returns one number per array, with the text in the array's name. VTK also has string arrays, but meshio
-// refuses files with them.
+// Returns one number per array, with the text in the array's name, and the colours of labels. VTK also has
+// string arrays, but meshio refuses files with them.
 std::string field_data(const TetMesh& mesh) {
   const auto array = [](const std::string& name, std::uint32_t value) {
     return fmt::format(
@@ -97,6 +98,13 @@ std::string field_data(const TetMesh& mesh) {
   for (const std::string& promise : promises_of(mesh)) text += array("promise:" + promise, 1);
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     text += array("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
+  if (const auto colours = colours_of(mesh.labels); !colours.empty()) {
+    text += fmt::format(
+        R"(<DataArray type="UInt32" Name="{}" NumberOfComponents="4" NumberOfTuples="{}" format="ascii">)",
+        kColourArray, colours.size());
+    for (const auto& colour : colours) text += fmt::format("{}\n", fmt::join(colour, " "));
+    text += "</DataArray>\n";
+  }
   return text + "</FieldData>\n";
 }
 

@@ -193,6 +193,21 @@ void assign(cli::LabelRanges& to, const py::handle& value, const Declaration& of
   to = label_values(spelled(of), value);
 }
 
+// One number, an iterable of numbers, or a text such as "1,0".
+void assign(LayerOrder& to, const py::handle& value, const Declaration& of) {
+  const std::string keyword = spelled(of);
+  if (is_text(value)) return cli::parse_into(to, bytes_of(keyword, value, false), of);
+  const bool is_iterable = is_a(value, "collections.abc", "Iterable");
+  const py::object given = py::reinterpret_borrow<py::object>(value);
+  const py::list numbers = is_iterable ? py::list(given) : py::list(py::make_tuple(given));
+  std::string text;
+  for (const py::handle number : numbers) {
+    if (!is_integral(number)) fail(keyword, "numbers of layers from bottom to top, as [1, 0],", value);
+    text += (text.empty() ? "" : ",") + text_of_number(number);
+  }
+  cli::parse_into(to, text, of);
+}
+
 void assign(cli::Merges& to, const py::handle& value, const Declaration& of) {
   const std::string keyword = spelled(of);
   if (!is_mapping(value)) fail(keyword, "a dict from names to label values, as {\"kidney\": [2, 3]},", value);

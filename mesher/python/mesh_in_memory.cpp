@@ -43,18 +43,11 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
 LabelImage read_input(const Input& input, const cli::MeshCommand& command, std::uint64_t limit_bytes) {
   const int threads = loop_threads(command.meshing.team);
   const std::uint64_t most_bytes = cli::bytes_for_image(limit_bytes);
-  LabelImage image;
-  if (input.array) {
-    image = image_of_array(*input.array, input.voxel_to_ras, input.path, command.image.selection, threads,
-                           most_bytes);
-  } else {
-    image = cli::read_labelled_image(command.image, threads, most_bytes);
-  }
-  auto names = input.names;
-  if (input.array && !command.image.label_names_path.empty())
-    names.merge(read_label_names(command.image.label_names_path));
-  cli::name_labels(image, names);
-  return image;
+  LabelSelection selection = cli::with_table(command.image);
+  for (const auto& [value, name] : input.names) selection.table.push_back({value, name});
+  return input.array
+             ? image_of_array(*input.array, input.voxel_to_ras, input.path, selection, threads, most_bytes)
+             : read_image(command.image.path, selection, threads, most_bytes);
 }
 
 std::string MeshInMemory::record() {

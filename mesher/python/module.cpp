@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <climits>
+#include <map>
 #include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "algorithms/team_size.h"
 #include "cli/commands/labelled_image.h"
@@ -176,6 +178,14 @@ std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& mad
   return labels;
 }
 
+// Returns the colour of each label that has one, by value.
+std::map<std::uint32_t, std::tuple<int, int, int>> colours_of(const MeshInMemory& made) {
+  std::map<std::uint32_t, std::tuple<int, int, int>> colours;
+  for (const Label& label : made.mesh().labels)
+    if (label.colour) colours[label.value] = {(*label.colour)[0], (*label.colour)[1], (*label.colour)[2]};
+  return colours;
+}
+
 // Returns what write_mesh() does.
 std::vector<py::str> save(const MeshInMemory& made, const std::string& path, const py::object& gmsh_version) {
   std::vector<std::string> losses;
@@ -222,6 +232,7 @@ void define_mesh(py::module_& module) {
       .def_property_readonly("facets", view(&TetMesh::facets, rows_of))
       .def_property_readonly("labels_of_facet", view(&TetMesh::facet_labels, rows_of))
       .def_property_readonly("labels", &labels_of)
+      .def_property_readonly("colours", &colours_of)
       .def_property_readonly("space", [](Self made) { return to_string(made->mesh().space); })
       .def_property_readonly("stop_reason",
                              [](Self made) { return to_string(made->run().report.stop_reason); })

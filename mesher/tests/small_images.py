@@ -5,7 +5,9 @@ import zlib
 
 # NIfTI-1 datatype codes.
 UINT8, INT16, INT32, FLOAT32, FLOAT64, RGB24, INT8, UINT16, UINT32 = 2, 4, 8, 16, 64, 128, 256, 512, 768
-_BYTES = {UINT8: 1, INT16: 2, INT32: 4, FLOAT32: 4, FLOAT64: 8, RGB24: 3, INT8: 1, UINT16: 2, UINT32: 4}
+INT64, UINT64 = 1024, 1280
+_BYTES = {UINT8: 1, INT16: 2, INT32: 4, FLOAT32: 4, FLOAT64: 8, RGB24: 3, INT8: 1, UINT16: 2, UINT32: 4, INT64: 8,
+          UINT64: 8}
 
 
 def voxels_of(size, label_at):
@@ -42,14 +44,22 @@ def write_nifti(path, *arguments, **options):
     return path
 
 
-def write_metaimage(path, voxels, size=12, spacing="1 1 1", compressed_size=None):
+def write_nrrd(path, voxels, size, type_name):
+    """Writes a NRRD file of size^3 voxels."""
+    path.write_bytes(f"NRRD0004\ntype: {type_name}\ndimension: 3\nspace: left-posterior-superior\n"
+                     f"sizes: {size} {size} {size}\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nendian: little\n"
+                     "encoding: raw\nspace origin: (0,0,0)\n\n".encode() + voxels)
+    return path
+
+
+def write_metaimage(path, voxels, size=12, spacing="1 1 1", compressed_size=None, element_type="MET_UCHAR"):
     """Writes a MetaImage file. `spacing` is written as given, and so is the size of the compressed stream."""
     compression = ""
     if compressed_size is not None:
         voxels = zlib.compress(voxels)
         compression = f"CompressedData = True\nCompressedDataSize = {compressed_size}\n"
     header = (f"ObjectType = Image\nNDims = 3\n{compression}DimSize = {size} {size} {size}\n"
-              f"ElementSpacing = {spacing}\nElementType = MET_UCHAR\nElementByteOrderMSB = False\nBinaryData = True\n"
-              "ElementDataFile = LOCAL\n")
+              f"ElementSpacing = {spacing}\nElementType = {element_type}\nElementByteOrderMSB = False\n"
+              "BinaryData = True\nElementDataFile = LOCAL\n")
     path.write_bytes(header.encode() + voxels)
     return path

@@ -109,6 +109,21 @@ class BadOptionsForTheImage(PodmTestCase):
         self.assert_mesh_refused(["--label-names", self.folder / "missing.txt"], "missing.txt")
         (self.folder / "empty.txt").touch()
         self.assert_mesh_refused(["--label-names", self.folder / "empty.txt"], "empty.txt")
+        (self.folder / "colours.txt").write_text("#No. Label Name: R G B A\n1 liver 1 2 3 0\n2 spleen 1 2 300 0\n")
+        self.assert_mesh_refused(["--label-names", self.folder / "colours.txt"], "colours.txt:3", "VALUE NAME R G B A")
+        (self.folder / "unknown.txt").write_text("Value,Name\n1,liver\n")
+        self.assert_mesh_refused(["--label-names", self.folder / "unknown.txt"], "unknown.txt:1", "no known format")
+
+    def test_labels_of_64_bits_outside_the_range(self):
+        for value, shown in ((-1, "-1"), (2**32, "4294967296"), (2**63 - 1, "9223372036854775807")):
+            voxels = struct.pack("<64q", *([1] * 63), value)
+            for image in (
+                    small_images.write_nifti(self.folder / "a.nii", voxels, (4, 4, 4), small_images.INT64),
+                    small_images.write_nrrd(self.folder / "a.nrrd", voxels, 4, "int64"),
+                    small_images.write_metaimage(self.folder / "a.mha", voxels, 4, element_type="MET_LONG_LONG")):
+                with self.subTest(value=value, name=image.name):
+                    self.assert_refused(["mesh", image, "-o", self.out], f"{image.name}: ",
+                                        f"voxel (3, 3, 3) is {shown}, no label")
 
     def test_absurdly_small_sizes_are_refused_with_an_estimate(self):
         for options in (["--radius", "1e-5"], ["--radius", "1e-300"], ["--delta", "1e-6"],

@@ -45,6 +45,14 @@ class Files(InFolder):
         mesh = box()
         self.assertEqual(labels_of_cells(read_mesh(self.write(mesh))), labels_of_cells(mesh))
 
+    def test_a_file_may_hold_colours_of_labels(self):
+        path = self.write(box())
+        self.assertEqual(read_mesh(path).colours, {})
+        text, fields = path.read_text(), '<FieldData><DataArray type="UInt32" Name="label_colours" ' \
+            'NumberOfComponents="4" NumberOfTuples="2" format="ascii">1 255 0 51\n2 1 2 3\n</DataArray></FieldData>'
+        path.write_text(text.replace("<UnstructuredGrid>", "<UnstructuredGrid>" + fields))
+        self.assertEqual(read_mesh(path).colours, {1: "#ff0033", 2: "#010203"})
+
     def test_what_cannot_be_shown_is_named(self):
         for path, words in ((self.folder / "none.vtu", "none.vtu: No such file"),
                             (self.folder / "mesh.inp", "mesh.inp: not a mesh file that can be shown; convert it"),
@@ -124,6 +132,14 @@ class Colours(unittest.TestCase):
         table = colours.colours_of_labels(many)
         self.assertEqual(len(set(table.values())), count)
         self.assertEqual(table[count - 1], colours.PALE)
+
+    def test_a_label_has_its_own_colour_if_the_image_gives_one(self):
+        mesh = box(4)
+        plain = colours.colours_of_labels(mesh)
+        for given in ({2: "#123456"}, {1: "#000000", 2: "#ffffff"}, {9: "#123456"}):
+            table = colours.colours_of_labels(Mesh(mesh.points, mesh.cells, mesh.labels, NAMES, given))
+            self.assertEqual(table, {value: given.get(value, colour) for value, colour in plain.items()})
+            self.assertEqual(list(table), list(plain))
 
     def test_a_single_label_is_not_pale(self):
         mesh = box(1)

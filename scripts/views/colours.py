@@ -10,8 +10,9 @@ RAMP = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da
 
 
 def colours_of_labels(mesh):
-    """Returns a colour per label value, by rank of volume."""
-    return colours_by_rank(mesh.labels_by_volume())
+    """Returns a colour per label value: the label's own, otherwise one by rank of volume among all labels."""
+    ranked = mesh.labels_by_volume()
+    return colours_by_rank(ranked) | {value: mesh.colours[value] for value in ranked if value in mesh.colours}
 
 
 def colours_by_rank(ranked):

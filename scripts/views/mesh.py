@@ -14,6 +14,7 @@ class Mesh:
     cells: numpy.ndarray  # m x 4, indices of points
     labels: numpy.ndarray  # m, values
     names: dict = field(default_factory=dict)  # by label value; unnamed labels are missing
+    colours: dict = field(default_factory=dict)  # "#rrggbb" by label value, of labels whose image gives one
 
     def name_of(self, value):
         return self.names.get(int(value), f"label {value}")

@@ -1,4 +1,5 @@
-"""Reads tetrahedra, their labels and the labels' names from VTK's mesh files. podm converts other formats to these."""
+"""Reads tetrahedra, their labels, and the labels' names and colours from VTK's mesh files. podm converts other formats
+to these."""
 from pathlib import Path
 
 import numpy
@@ -45,7 +46,8 @@ def _read_vtk(path):
         raise MeshError(f"{path}: cells other than tetrahedra")
     return Mesh(vtk_to_numpy(grid.GetPoints().GetData()).astype(float),
                 vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
-                vtk_to_numpy(grid.GetCellData().GetArray("label")), _names_of_fields(grid.GetFieldData()))
+                vtk_to_numpy(grid.GetCellData().GetArray("label")), _names_of_fields(grid.GetFieldData()),
+                _colours_of_fields(grid.GetFieldData()))
 
 
 def _names_of_fields(fields):
@@ -54,6 +56,16 @@ def _names_of_fields(fields):
     arrays = [fields.GetAbstractArray(index) for index in range(fields.GetNumberOfArrays())]
     named = [array for array in arrays if array.GetName().startswith("label:") and array.GetNumberOfValues() == 1]
     return {int(array.GetVariantValue(0).ToDouble()): array.GetName().removeprefix("label:") for array in named[1:]}
+
+
+def _colours_of_fields(fields):
+    """Returns the colours in the array `label_colours` that podm writes: value, red, green and blue of each label."""
+    array = fields.GetArray("label_colours")
+    if array is None or array.GetNumberOfComponents() != 4:
+        return {}
+    tuples = [array.GetTuple(index) for index in range(array.GetNumberOfTuples())]
+    return {int(value): "#" + "".join(f"{int(share):02x}" for share in shares) for value, *shares in tuples
+            if all(0 <= share <= 255 for share in shares)}
 
 
 READERS = {".vtu": _read_vtk, ".pvtu": _read_vtk, ".vtk": _read_vtk}

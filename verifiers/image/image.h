@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,14 @@ struct Image {
   std::vector<std::uint32_t> voxels;       ///< label values
   std::vector<std::string> warnings = {};  ///< oddities of the file
   std::optional<Smoothing> smoothing = {};
+  std::set<std::uint32_t> covered_labels = {};  ///< of segments that others cover, perhaps entirely
 };
 
-/// Reads NIfTI, NRRD, MetaImage, INRIMAGE, and ".gz" of NIfTI and INR. Throws InputError.
-Image read_image(const std::string& path);
+struct LabelSelection;
+
+/// Reads NIfTI, NRRD, MetaImage, INRIMAGE, and ".gz" of NIfTI and INR. The selection, which is not applied
+/// here, decides how the layers of a segmentation are merged (segmentation.h). Throws InputError.
+Image read_image(const std::string& path, const LabelSelection& selection);
+Image read_image(const std::string& path);  ///< with all labels and layers
 
 }  // namespace podm::verify

@@ -82,6 +82,20 @@ LabelSelection::Ranges parse_label_ranges(const std::string& text, const std::st
   return ranges;
 }
 
+std::vector<std::size_t> parse_layers(const std::string& text, const std::string& option) {
+  std::vector<std::size_t> layers;
+  for_each_part(text, [&](std::string_view part) {
+    std::size_t layer = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), layer);
+    if (error != std::errc() || end != part.data() + part.size())
+      throw InputError(fmt::format("{}: '{}' is not the number of a layer", option, part));
+    if (std::find(layers.begin(), layers.end(), layer) != layers.end())
+      throw InputError(fmt::format("{}: layer {} is named twice", option, layer));
+    layers.push_back(layer);
+  });
+  return layers;
+}
+
 std::vector<std::uint32_t> parse_merge(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
@@ -92,14 +106,19 @@ std::vector<std::uint32_t> parse_merge(const std::string& text) {
   return values;
 }
 
+bool keeps(const LabelSelection& selection, std::uint32_t value) {
+  return value == selection.background ||
+         (!holds(selection.drop, value) && (selection.keep.empty() || holds(selection.keep, value)));
+}
+
 void select_labels(Image& image, const LabelSelection& selection) {
   const std::set<std::uint32_t> present(image.voxels.begin(), image.voxels.end());
-  check_selection(image, present, selection);
+  std::set<std::uint32_t> known = present;
+  known.insert(image.covered_labels.begin(), image.covered_labels.end());
+  check_selection(image, known, selection);
   std::map<std::uint32_t, std::uint32_t> becomes;
   for (const std::uint32_t value : present)
-    if (value != selection.background && !holds(selection.drop, value) &&
-        (selection.keep.empty() || holds(selection.keep, value)))
-      becomes[value] = value;
+    if (value != selection.background && keeps(selection, value)) becomes[value] = value;
   for (const auto& values : selection.merges)
     for (const std::uint32_t value : values)
       if (becomes.contains(value)) becomes[value] = values.front();

@@ -18,6 +18,7 @@ struct LabelSelection {
   std::uint32_t background = 0;                      ///< its value in the mesh and the image
   Ranges keep{}, drop{};                             ///< no range to keep: all are kept
   std::vector<std::vector<std::uint32_t>> merges{};  ///< each becomes one label with the first of its values
+  std::vector<std::size_t> layers{};                 ///< see image/segmentation.h; none: all
   double drop_islands_mm3 = 0;                       ///< see image/islands.h; 0: none are dropped
 
   bool operator==(const LabelSelection&) const = default;
@@ -27,8 +28,13 @@ struct LabelSelection {
 std::uint32_t parse_label(std::string_view text, const std::string& option);
 /// Parses "1,3-7". Throws InputError that names `option`.
 LabelSelection::Ranges parse_label_ranges(const std::string& text, const std::string& option);
+/// Parses "1,0". Throws InputError that names `option`.
+std::vector<std::size_t> parse_layers(const std::string& text, const std::string& option);
 /// Parses "2,3=kidney". The name is not kept, since no claim is about names. Throws InputError.
 std::vector<std::uint32_t> parse_merge(const std::string& text);
+
+/// Returns true for the background and for labels that are neither dropped nor left out.
+bool keeps(const LabelSelection& selection, std::uint32_t value);
 
 /// Applies the selection to the image. Labels that are dropped or not kept become background, 0. Merged
 /// labels become one. A background of another value and 0 change places, as in move_background(). Throws

@@ -33,7 +33,10 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<std::i
 void refuse(const std::string& path, const std::string& fault) { throw InputError(path + ": " + fault); }
 
 void read_voxels(const std::string& path, RawImage& raw, ByteSource& source) {
-  const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
+  const std::size_t num_voxels = checked_num_voxels(path, raw.size), bytes = bytes_of(raw.type);
+  if (raw.num_layers > std::numeric_limits<std::size_t>::max() / bytes / num_voxels)
+    refuse(path, std::to_string(raw.num_layers) + " layers are too many");
+  const std::size_t needed = num_voxels * raw.num_layers * bytes;
   source.expect_room_for(needed);
   raw.bytes.resize(needed);
   source.read(raw.bytes.data(), needed);

@@ -30,6 +30,13 @@ inline std::size_t bytes_of(VoxelType type) {
   return with_voxel_type(type, [](auto voxel) { return sizeof voxel; });
 }
 
+/// A segment of a segmentation of 3D Slicer.
+struct Segment {
+  std::uint32_t stored = 0;  ///< its value in the voxels of its layer
+  std::uint32_t label = 0;   ///< its value in the image
+  std::size_t layer = 0;
+};
+
 struct RawImage {
   std::vector<std::int64_t> size;  ///< voxels per axis, for all axes of the file
   VoxelType type = VoxelType::kUint8;
@@ -37,6 +44,9 @@ struct RawImage {
   double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest
+  std::size_t num_layers = 1;              ///< values per voxel
+  bool layers_come_first = true;           ///< true: values of a voxel are together; false: those of a layer
+  std::vector<Segment> segments = {};      ///< of several layers; may be there if there is one layer
   std::vector<std::string> warnings = {};  ///< as in Image
 };
 
@@ -44,8 +54,8 @@ struct RawImage {
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);
 
 /// Fills raw.bytes with all bytes left in the source. Throws InputError unless size and type are those of a
-/// 3-D image (further axes of length 1) and the source holds exactly its bytes. Memory is allocated only if
-/// the file can hold that much.
+/// 3-D image (further axes of length 1) and the source holds exactly the bytes of all layers. Memory is
+/// allocated only if the file can hold that much.
 void read_voxels(const std::string& path, RawImage& raw, ByteSource& source);
 
 /// Returns the voxel spacing, mm. An affine that is orthogonal up to the rounding of a header is made exactly

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "image/image.h"
+#include "image/label_selection.h"
 #include "image/raw_image.h"
+#include "image/segmentation.h"
 
 namespace podm::verify {
 
@@ -12,13 +14,16 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 
+// Returns the label of voxel i.
 template <class Voxel>
-std::uint32_t label_value(const std::string& path, Voxel voxel) {
+std::uint32_t label_value(const Image& image, std::size_t i, Voxel voxel) {
   constexpr double kEnd = 4294967296.0;
   const auto value = static_cast<double>(voxel);
+  const auto x = static_cast<std::size_t>(image.size[0]), y = static_cast<std::size_t>(image.size[1]);
   if (!(value >= 0 && value < kEnd) || std::floor(value) != value)
-    refuse(path, "a label image is needed: value " + std::to_string(value) +
-                     " is not a label (integers, 0 to 2^32-1)");
+    refuse(image.path, "a label image is needed: voxel (" + std::to_string(i % x) + ", " +
+                           std::to_string(i / x % y) + ", " + std::to_string(i / x / y) + ") has the value " +
+                           std::to_string(voxel) + ", which is not a label (integers, 0 to 2^32-1)");
   return static_cast<std::uint32_t>(value);
 }
 
@@ -87,8 +92,11 @@ RawImage read_raw(const std::string& path) {
   refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz)");
 }
 
-Image read_image(const std::string& path) {
+Image read_image(const std::string& path) { return read_image(path, {}); }
+
+Image read_image(const std::string& path, const LabelSelection& selection) {
   RawImage raw = read_raw(path);
+  check_layers(path, raw, selection);
   Image image;
   image.path = path;
   image.warnings = raw.warnings;
@@ -97,8 +105,12 @@ Image read_image(const std::string& path) {
   image.spacing = orthogonalize_affine(path, image.voxel_to_ras);
   if (raw.slope != 1 || raw.intercept != 0)
     refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
+  if (raw.num_layers > 1) {
+    merge_layers(raw, selection, image);
+    return image;
+  }
   image.voxels.resize(raw.bytes.size() / bytes_of(raw.type));
-  for_each_voxel(raw, [&](std::size_t i, auto voxel) { image.voxels[i] = label_value(path, voxel); });
+  for_each_voxel(raw, [&](std::size_t i, auto voxel) { image.voxels[i] = label_value(image, i, voxel); });
   return image;
 }
 

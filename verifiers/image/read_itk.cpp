@@ -6,9 +6,11 @@
 #include <bit>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "image/byte_source.h"
 #include "image/raw_image.h"
+#include "image/segmentation.h"
 
 namespace podm::verify {
 
@@ -67,7 +69,9 @@ std::string beside(const std::string& path, const std::string& name) {
 struct Voxels {
   ByteSource source;
   bool is_big_endian;
-  std::string announced_bytes = {};  // compressed size by the header; empty: not given
+  std::string announced_bytes = {};               // compressed size by the header; empty: not given
+  std::string kinds = {};                         // of the axes of a NRRD file
+  std::map<std::string, std::string> pairs = {};  // "key:=value" of a NRRD file
 };
 
 // ITK decides by the first letter that a value is true.
@@ -89,6 +93,14 @@ void expect_nrrd_lines(const std::string& path, const std::vector<std::string>& 
   }
 }
 
+std::map<std::string, std::string> pairs_in(const std::vector<std::string>& lines) {
+  std::map<std::string, std::string> pairs;
+  for (const std::string& line : lines)
+    if (const std::size_t at = line.find(":="); at != std::string::npos && !line.starts_with('#'))
+      pairs[line.substr(0, at)] = trimmed(line.substr(at + 2));
+  return pairs;
+}
+
 Voxels nrrd_voxels(const std::string& path) {
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
@@ -104,8 +116,12 @@ Voxels nrrd_voxels(const std::string& path) {
     refuse(path, "encoding '" + encoding + "' is not supported (raw and gzip are)");
   const Compression compression = encoding == "raw" ? Compression::kNone : Compression::kStream;
   const bool is_big_endian = lower(header["endian"]) == "big";
-  if (file.empty()) return {{path, path, header.bytes(), compression}, is_big_endian};
-  return {{path, beside(path, file), 0, compression}, is_big_endian};
+  const bool is_beside = !file.empty();
+  return {{path, is_beside ? beside(path, file) : path, is_beside ? 0 : header.bytes(), compression},
+          is_big_endian,
+          {},
+          lower(header["kinds"]),
+          pairs_in(header.lines())};
 }
 
 // Throws unless ITK can read the lines safely. ITK has 255 bytes for a name or a comment. If a name has no
@@ -150,12 +166,26 @@ VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
       {Io::ULONG, VoxelType::kUint64},  {Io::ULONGLONG, VoxelType::kUint64},
       {Io::LONG, VoxelType::kInt64},    {Io::LONGLONG, VoxelType::kInt64},
       {Io::FLOAT, VoxelType::kFloat},   {Io::DOUBLE, VoxelType::kDouble}};
-  if (io.GetNumberOfComponents() != 1)
-    refuse(path,
-           "one value per voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
   const auto known = kTypes.find(io.GetComponentType());
   if (known == kTypes.end()) refuse(path, "unknown voxel type");
   return known->second;
+}
+
+// Sets the layers, which ITK takes for components of a vector, and the segments.
+void read_layers(const std::string& path, const itk::ImageIOBase& io, const Voxels& voxels, RawImage& raw) {
+  raw.num_layers = io.GetNumberOfComponents();
+  raw.segments = read_segments(path, voxels.pairs, raw.num_layers);
+  if (raw.num_layers == 1) return;
+  if (raw.segments.empty())
+    refuse(path, "one value per voxel is needed, this image has " + std::to_string(raw.num_layers));
+  const auto is_of_space = [](const std::string& kind) { return kind == "domain" || kind == "space"; };
+  std::istringstream words(voxels.kinds);
+  std::string first, last;
+  for (std::string word; words >> word; last = word)
+    if (first.empty()) first = word;
+  raw.layers_come_first = !is_of_space(first);
+  if (!raw.layers_come_first && is_of_space(last))
+    refuse(path, "the axis of the layers is neither the first nor the last (kinds)");
 }
 
 // ITK's world is LPS.
@@ -191,6 +221,7 @@ RawImage read(const std::string& path, itk::ImageIOBase& io, Voxels voxels) {
   }
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
     raw.size.push_back(static_cast<std::int64_t>(io.GetDimensions(axis)));
+  read_layers(path, io, voxels, raw);
   raw.type = voxel_type(path, io);
   raw.is_swapped = voxels.is_big_endian != (std::endian::native == std::endian::big);
   if (raw.size.size() >= 3) raw.voxel_to_ras = voxel_to_ras(path, io);

@@ -7,6 +7,8 @@ namespace podm::verify {
 
 SizeImage read_size_image(const std::string& path) {
   RawImage raw = read_raw(path);
+  if (raw.num_layers != 1)
+    refuse(path, "a size image has one value per voxel, this image has " + std::to_string(raw.num_layers));
   SizeImage image;
   image.path = path;
   image.warnings = raw.warnings;

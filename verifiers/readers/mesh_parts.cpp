@@ -120,6 +120,22 @@ std::string upper(std::string_view word) {
   return text;
 }
 
+void read_label_colours(const MeshFile& file, const std::string& place, const NumberArray& numbers,
+                        Mesh& mesh) {
+  for (std::size_t i = 0; i < numbers.size(); i += 4) {
+    const auto value = numbers.integer(i);
+    std::array<std::uint8_t, 3> colour{};
+    bool is_colour = value && i + 3 < numbers.size();
+    for (std::size_t c = 0; is_colour && c < colour.size(); ++c) {
+      const auto share = numbers.integer(i + 1 + c);
+      is_colour = share && *share >= 0 && *share <= 255;
+      if (is_colour) colour[c] = static_cast<std::uint8_t>(*share);
+    }
+    if (!is_colour) file.refuse(place, "not integers in fours: a label value and a colour from 0 to 255");
+    mesh.label_colours[*value] = colour;
+  }
+}
+
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return std::nullopt;
   return text.substr(prefix.size());

@@ -13,6 +13,7 @@
 
 #include "mesh.h"
 #include "readers/mesh_file.h"
+#include "readers/number_array.h"
 
 namespace podm::verify {
 
@@ -55,6 +56,12 @@ void label_facets(const MeshFile& file, const std::string& place, const char* wh
 
 /// Returns the word with its ASCII letters in capitals.
 std::string upper(std::string_view word);
+
+/// The array in which podm writes label colours: value, red, green and blue of each label.
+inline constexpr const char* kColourArray = "label_colours";
+/// Reads this array. Throws InputError at `place` if its numbers are of another kind.
+void read_label_colours(const MeshFile& file, const std::string& place, const NumberArray& numbers,
+                        Mesh& mesh);
 
 /// Returns the rest of `text` after `prefix`; none if `text` does not begin with it.
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix);

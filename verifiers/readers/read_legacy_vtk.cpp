@@ -202,6 +202,8 @@ class LegacyVtkReader {
       const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;
       if (!value) cursor_.refuse("not one integer, the value of the label");
       grid_.mesh.label_names[*value] = *label;
+    } else if (name == kColourArray) {
+      read_label_colours(file_, "FIELD", values, grid_.mesh);
     }
   }
 

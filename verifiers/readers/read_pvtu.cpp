@@ -61,6 +61,7 @@ class PieceMerger {
       whole_.format = fmt::format("PVTU of {} pieces: {}", pieces_.size(), grid.mesh.format);
       whole_.space = grid.mesh.space;
       whole_.label_names = grid.mesh.label_names;
+      whole_.label_colours = grid.mesh.label_colours;
       whole_.unclaimed = grid.mesh.unclaimed;
       whole_.promised_dihedral_deg = grid.mesh.promised_dihedral_deg;
       whole_.smoothing_mm = grid.mesh.smoothing_mm;

@@ -49,7 +49,7 @@ VtkPiece load_piece(const MeshFile& file, VtuDocument& document, const VtuPiece&
 }
 
 // Reads the arrays that podm writes: "space:RAS", "promise:unclaimed delaunay" and "label:liver", whose value
-// is the label's.
+// is the label's, and the colours of labels.
 void read_field_data(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
   for (const VtuArray& array : document.field_data) {
     if (read_note(file, array.place(), array.name, mesh, ':')) continue;
@@ -58,6 +58,8 @@ void read_field_data(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
       const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;
       if (!value) file.refuse(array.place(), "not one integer, the value of the label");
       mesh.label_names[*value] = *name;
+    } else if (array.name == kColourArray) {
+      read_label_colours(file, array.place(), load_vtu_array(file, document, array, std::nullopt), mesh);
     }
   }
 }

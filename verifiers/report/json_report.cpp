@@ -101,6 +101,7 @@ Json selection_of(const LabelSelection& selection) {
           {"labels", selection.keep},
           {"drop", selection.drop},
           {"merge", selection.merges},
+          {"layers", selection.layers},
           {"drop_islands_mm3", selection.drop_islands_mm3}};
 }
 

@@ -107,8 +107,10 @@ class MeshBuilder {
     for (const std::int64_t value : values) {
       index_of[value] = static_cast<LabelIndex>(mesh_.labels.size());
       const auto name = file_.label_names.find(value);
-      mesh_.labels.push_back(
-          {static_cast<std::uint32_t>(value), name == file_.label_names.end() ? "" : name->second});
+      const auto colour = file_.label_colours.find(value);
+      Label& label = mesh_.labels.emplace_back(Label{static_cast<std::uint32_t>(value), ""});
+      if (name != file_.label_names.end()) label.name = name->second;
+      if (colour != file_.label_colours.end()) label.colour = colour->second;
     }
     for (const std::int64_t value : file_.cell_labels) mesh_.cell_labels.push_back(index_of[value]);
   }

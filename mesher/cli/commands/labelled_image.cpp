@@ -34,20 +34,13 @@ std::vector<std::uint32_t> values_called(const std::string& name_or_value, std::
 }  // namespace
 
 LabelImage read_labelled_image(const ImageArguments& arguments, int threads, std::uint64_t most_bytes) {
-  std::map<std::uint32_t, std::string> names;  // read before the image, so that a fault shows at once
-  if (!arguments.label_names_path.empty()) names = read_label_names(arguments.label_names_path);
-  LabelImage image = read_image(arguments.path, arguments.selection, threads, most_bytes);
-  name_labels(image, names);
-  return image;
+  return read_image(arguments.path, with_table(arguments), threads, most_bytes);
 }
 
-void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names) {
-  const auto name = [&](Label& label) {
-    const auto named = names.find(label.value);
-    if (label.name.empty() && named != names.end()) label.name = named->second;
-  };
-  for (Label& label : image.labels) name(label);
-  for (DroppedIslands& dropped : image.dropped_islands) name(dropped.label);
+LabelSelection with_table(const ImageArguments& arguments) {
+  LabelSelection selection = arguments.selection;
+  if (!arguments.label_names_path.empty()) selection.table = read_label_table(arguments.label_names_path);
+  return selection;
 }
 
 std::map<std::uint32_t, double> lengths_by_value(

@@ -1,4 +1,4 @@
-// An image as the command line specifies it: selected labels, named from a table.
+// An image as the command line specifies it: selected and named labels.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace podm::cli {
 
-/// Reads the image and gives names from the table to labels without a name. `threads` and `most_bytes` are
-/// those of read_image().
+/// Reads the table of labels, if there is one, and the image. `threads` and `most_bytes` are those of
+/// read_image().
 LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0,
                                std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Gives names to labels without a name.
-void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names);
+/// Returns the selection with the names and colours of the table.
+LabelSelection with_table(const ImageArguments& arguments);
 
 /// Returns lengths by label value. A name stands for every label with this name. Throws InputError that names
 /// `image_path` if a label is absent.

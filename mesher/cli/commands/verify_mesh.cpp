@@ -35,6 +35,8 @@ std::vector<std::string> image_options(const MeshRun& run, const std::function<s
   std::vector<std::string> options{"--image", image.path, "--background", background};
   if (!selection.keep.empty()) options.insert(options.end(), {"--labels", text_of(selection.keep)});
   if (!selection.drop.empty()) options.insert(options.end(), {"--drop", text_of(selection.drop)});
+  if (!selection.layers.empty())
+    options.insert(options.end(), {"--layers", fmt::format("{}", fmt::join(selection.layers, ","))});
   if (selection.drop_islands_mm3 > 0)
     options.insert(options.end(), {"--drop-islands", fmt::format("{}", selection.drop_islands_mm3)});
   for (const auto& [values, name] : selection.merges)

@@ -131,6 +131,10 @@ void parse_into(LabelRanges& value, const std::string& text, const Declaration& 
   value = parse_label_ranges(text, spelled(of));
 }
 
+void parse_into(LayerOrder& value, const std::string& text, const Declaration& of) {
+  value = parse_layers(text, spelled(of));
+}
+
 void parse_into(Merges& value, const std::string& text, const Declaration&) {
   value.push_back(parse_merge(text));
 }

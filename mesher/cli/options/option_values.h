@@ -97,6 +97,7 @@ void parse_into(std::array<double, 2>& value, const std::string& text, const Dec
 void parse_into(LabelLengths& value, const std::string& text, const Declaration& of);
 void parse_into(std::vector<NearLabels>& value, const std::string& text, const Declaration& of);
 void parse_into(LabelRanges& value, const std::string& text, const Declaration& of);
+void parse_into(LayerOrder& value, const std::string& text, const Declaration& of);
 void parse_into(Merges& value, const std::string& text, const Declaration& of);
 void parse_into(MemoryLimit& value, const std::string& text, const Declaration& of);
 void parse_into(NetworkArguments& value, const std::string& text, const Declaration& of);

@@ -29,10 +29,12 @@ struct ImageArguments {
 
   static constexpr auto options() {
     using I = ImageArguments;
-    return std::tuple{nested(&I::selection),
-                      option(&I::label_names_path, "label-names", "FILE", OptionGroup::kLabels,
-                             "names of labels: an ITK-SNAP table or lines \"value name\"",
-                             {.unset = "none", .uses = kInPodm | kOnRanks | kInPython, .keyword = "names"})};
+    return std::tuple{
+        nested(&I::selection),
+        option(&I::label_names_path, "label-names", "FILE", OptionGroup::kLabels,
+               "names and colours of labels: a table of ITK-SNAP, FreeSurfer or 3D Slicer\n"
+               "(.ctbl), or lines \"value name\"; they replace those in the image",
+               {.unset = "none", .uses = kInPodm | kOnRanks | kInPython, .keyword = "names"})};
   }
 };
 

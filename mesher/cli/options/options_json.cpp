@@ -63,6 +63,8 @@ const char* kind_of(const Declaration& of) {
     return "lengths of pairs of labels";
   } else if constexpr (std::same_as<Value, LabelRanges>) {
     return "label values";
+  } else if constexpr (std::same_as<Value, LayerOrder>) {
+    return "integers";
   } else {
     static_assert(std::same_as<Value, Merges>);
     return "names of label values";

@@ -1,5 +1,5 @@
-// Any text is either accepted as label ranges, a merge or a label table, or refused with an InputError that
-// has a message. Accepted input is well formed.
+// Any text is either accepted as label ranges, layers, a merge or a label table, or refused with an
+// InputError that has a message. Accepted input is well formed.
 #include <string>
 
 #include "fuzz_scratch.h"
@@ -27,10 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   parses_or_refuses([&] {
     for (const auto& [first, last] : podm::parse_label_ranges(text, "--labels")) check(first <= last);
   });
+  parses_or_refuses([&] { check(!podm::parse_layers(text, "--layers").empty()); });
   parses_or_refuses([&] {
     const auto merge = podm::parse_merge(text);
     check(!merge.values.empty() && !merge.name.empty());
   });
-  parses_or_refuses([&] { check(!podm::read_label_names(folder.write("table.txt", text)).empty()); });
+  parses_or_refuses([&] { check(!podm::read_label_table(folder.write("table.txt", text)).empty()); });
   return 0;
 }

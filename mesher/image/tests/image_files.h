@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,12 @@ inline std::string inr_header(const std::string& fields,
   std::string header = "#INRIMAGE-4#{\n" + dims + fields + type;
   header.resize(256 - 4, '\n');
   return header + "##}\n";
+}
+
+inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  return at == std::string::npos ? throw std::logic_error("no '" + what + "'")
+                                 : text.replace(at, what.size(), by);
 }
 
 inline std::string nrrd_header(const std::string& fields) { return "NRRD0004\n" + fields + "\n"; }

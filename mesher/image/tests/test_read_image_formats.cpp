@@ -236,6 +236,52 @@ TEST_F(ReadImage, EveryIntegerTypeAndIntegralFloats) {
   expect_two_voxels(read(DT_FLOAT64, 64, bytes_of_values(two_voxels_as<double>())));
 }
 
+template <class Voxel>
+std::string in_nifti(short datatype, const std::vector<Voxel>& voxels) {
+  nifti_1_header header = nifti_header();
+  header.datatype = datatype;
+  header.bitpix = 8 * sizeof(Voxel);
+  return nifti_file(header, bytes_of_values(voxels));
+}
+
+// nibabel and SimpleITK write such files. MetaIO calls eight bytes MET_LONG_LONG, and four MET_LONG.
+TEST_F(ReadImage, IntegersOf64Bits) {
+  auto voxels = two_voxels_as<std::int64_t>();
+  const std::string of_int64 = bytes_of_values(voxels);
+  const std::vector<std::uint64_t> without_sign(voxels.begin(), voxels.end());
+  expect_two_voxels(read_image(folder_.write("a.nii", in_nifti(DT_INT64, voxels))));
+  expect_two_voxels(read_image(folder_.write("b.nii", in_nifti(DT_UINT64, without_sign))));
+  for (const char* type : {"int64", "uint64", "long long", "unsigned long long int"}) {
+    const std::string header = nrrd_header(replaced(kNrrdFields, "uchar", type) + "encoding: raw\n");
+    expect_two_voxels(read_image(folder_.write("a.nrrd", header + of_int64)));
+  }
+  for (const char* type : {"MET_LONG_LONG", "MET_ULONG_LONG"}) {
+    const std::string header = mha_header(replaced(kMhaFields, "MET_UCHAR", type) + kMhaLocal);
+    expect_two_voxels(read_image(folder_.write("a.mha", header + of_int64)));
+  }
+  const std::string header = mha_header(replaced(kMhaFields, "MET_UCHAR", "MET_LONG") + kMhaLocal);
+  expect_two_voxels(
+      read_image(folder_.write("b.mha", header + bytes_of_values(two_voxels_as<std::int32_t>()))));
+}
+
+TEST_F(ReadImage, LabelsOf64BitsEndWhereLabelsDo) {
+  auto voxels = two_voxels_as<std::int64_t>();
+  voxels[2] = 0xffffffffLL;
+  const LabelImage image = read_image(folder_.write("a.nii", in_nifti(DT_INT64, voxels)));
+  EXPECT_EQ(image.labels.back().value, 0xffffffffU);
+  for (const std::int64_t value : {std::int64_t{-1}, std::int64_t{1} << 32, std::int64_t{1} << 62}) {
+    voxels[2] = value;
+    const std::string path = folder_.write("b.nii", in_nifti(DT_INT64, voxels));
+    try {
+      read_image(path);
+      ADD_FAILURE() << value;
+    } catch (const InputError& error) {
+      const std::string expected = "voxel (0, 1, 0) is " + std::to_string(value) + ", no label";
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(ReadImage, TheLargestValue) {
   nifti_1_header header = nifti_header();
   header.datatype = DT_UINT32;

@@ -62,12 +62,6 @@ std::string noise(std::size_t bytes) {
   return text;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  return at == std::string::npos ? throw std::logic_error("no '" + what + "'")
-                                 : text.replace(at, what.size(), by);
-}
-
 class Refused : public testing::TestWithParam<BadFile> {};
 
 TEST_P(Refused, NamingFileAndFault) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -15,19 +14,27 @@
 
 namespace podm {
 
-/// The labels of an image that are kept, and their values. Values are those stored in the file.
+/// Layers of a segmentation, from the bottom to the top.
+using LayerOrder = std::vector<std::size_t>;
+
+/// The labels of an image that are kept, their values and their names. Values are those stored in the file,
+/// unless segments share stored values (Segment::label).
 struct LabelSelection {
   std::uint32_t background = 0;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> keep;  ///< closed ranges; empty: all
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> drop;  ///< closed ranges
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> keep = {};  ///< closed ranges; empty: all
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> drop = {};  ///< closed ranges
   struct Merge {
     std::vector<std::uint32_t> values;  ///< these values become one label with the first value
     std::string name;
   };
-  std::vector<Merge> merges;
+  std::vector<Merge> merges = {};
   /// Smaller components of a resulting label go to a neighbour, mm^3. Faces join the voxels of a component.
   /// 0: all components stay.
   double drop_islands_mm3 = 0;
+  /// The layers that are read. Empty: all; segments that come later in the file are then above earlier ones.
+  LayerOrder layers = {};
+  /// Names and colours that replace those in the file. The last entry of a value counts.
+  std::vector<Label> table = {};
 
   static constexpr auto options() {
     using L = LabelSelection;
@@ -41,6 +48,9 @@ struct LabelSelection {
         option(&L::merges, "merge", "VALUES=NAME", kLabels,
                "merge several labels into one, e.g. 2,3=kidney; repeatable",
                {.unset = "none", .uses = kUses}),
+        option(&L::layers, "layers", "LAYERS", kLabels,
+               "layers of a .seg.nrrd of 3D Slicer that are read, bottom to top, e.g. 1,0",
+               {.unset = "all, later segments above earlier ones", .uses = kUses}),
         option(&L::drop_islands_mm3, "drop-islands", "MM3", kLabels,
                "relabel components (voxels joined by faces) smaller than this, mm^3, to the\n"
                "neighbour that shares the largest area",
@@ -53,15 +63,22 @@ struct LabelSelection {
 /// Parses "1,3-7". Throws InputError that names `option` and the fault.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> parse_label_ranges(const std::string& text,
                                                                         const std::string& option);
+/// Parses "1,0". Throws InputError that names `option` and the fault.
+LayerOrder parse_layers(const std::string& text, const std::string& option);
 /// Parses "2,3=kidney".
 LabelSelection::Merge parse_merge(const std::string& text);
 
-/// Reads label names: ITK-SNAP tables, or lines "value name ..." as in aal.nii.txt.
-std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
+/// Reads names and colours of labels, in a format that it recognises by content: ITK-SNAP's label
+/// descriptions, colour tables of FreeSurfer and 3D Slicer (.ctbl), or lines "value name ..." as in
+/// aal.nii.txt. Throws InputError that names the file, the line and the fault.
+std::vector<Label> read_label_table(const std::string& path);
 
 /// Reads NIfTI, NRRD, MetaImage, INR (each .gz where usual), or "phantom:NAME[@SIZE]". Throws InputError that
 /// names the file and the fault. Labels are sorted by value. `threads`: 0 for all cores. `most_bytes`: memory
 /// limit for a file's voxels and their labels together during reading.
+///
+/// The layers of a segmentation of 3D Slicer (.seg.nrrd) are merged: a voxel has the label of the topmost
+/// segment that covers it. Segments that the selection does not keep are below all others.
 LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 

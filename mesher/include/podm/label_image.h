@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,22 @@ inline constexpr LabelIndex kBackground = 0;
 inline constexpr std::size_t kMaxLabels = 65534;       ///< background included
 inline constexpr std::size_t kMaxVoxels = 0x7fffffff;  ///< the bricks of an image are numbered in 31 bits
 
+using Rgb = std::array<std::uint8_t, 3>;  ///< red, green, blue
+
 struct Label {
-  std::uint32_t value = 0;  ///< as stored in the image file
-  std::string name;         ///< from a label table; otherwise empty
+  std::uint32_t value = 0;         ///< as stored in the image file, unless segments share stored values
+  std::string name;                ///< from a label table or the image file; otherwise empty
+  std::optional<Rgb> colour = {};  ///< from the same
+};
+
+/// A segment of a segmentation of 3D Slicer. A layer holds at most one segment per voxel. Segments of
+/// different layers may overlap.
+struct Segment {
+  Label label;
+  std::uint32_t stored_value = 0;  ///< in the voxels of its layer
+  std::size_t layer = 0;
+  std::uint64_t voxels = 0;   ///< of the segment; counted only if the file has several layers
+  std::uint64_t covered = 0;  ///< those of them that belong to a segment above it in the image
 };
 
 /// The components of a label that were dropped because they are too small to mesh.
@@ -42,6 +56,7 @@ struct LabelImage {
   std::vector<Label> labels;                         ///< labels[0] is the background
   std::vector<std::string> warnings = {};            ///< unusual properties of the file that was read
   std::vector<DroppedIslands> dropped_islands = {};  ///< one entry per label that lost components
+  std::vector<Segment> segments = {};                ///< of a segmentation of 3D Slicer, in the file's order
 
   std::size_t num_voxels() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *

@@ -104,6 +104,18 @@ TEST_F(VtuFile, VtkReadsTheMeshThatWasWritten) {
   EXPECT_NEAR(content.volume, volume, 1e-9 * volume);
 }
 
+TEST_F(VtuFile, ColoursOfLabelsAreRowsOfFourNumbers) {
+  TetMesh mesh = make_test_mesh();
+  mesh.labels[0].colour = Rgb{9, 9, 9};  // the background has no row
+  mesh.labels[1].colour = Rgb{255, 0, 51};
+  mesh.labels[3].colour = Rgb{1, 2, 3};
+  canonicalize(mesh);
+  write_mesh(mesh, folder_ / "a.vtu");
+  const std::string rows =
+      std::to_string(mesh.labels[1].value) + " 255 0 51 " + std::to_string(mesh.labels[3].value) + " 1 2 3";
+  for (const char* name : {"a.vtu", "a_facets.vtu"}) EXPECT_EQ(read(name).field.at("label_colours"), rows);
+}
+
 TEST_F(VtuFile, TheFacetsLieBesideIt) {
   TetMesh mesh = make_test_mesh();
   canonicalize(mesh);

@@ -43,7 +43,7 @@ def main():
     ids = grid.GetPointData().GetGlobalIds()
     print("globalids", ids.GetName() if ids else "none")
     for array in arrays(grid.GetFieldData()):
-        print("field", array.GetName() + "\t" + str(array.GetValue(0)))
+        print("field", array.GetName() + "\t" + " ".join(map(str, values(array))))
 
     sizes = vtk.vtkCellSizeFilter()
     sizes.SetInputData(grid)

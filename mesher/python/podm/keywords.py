@@ -14,7 +14,8 @@ TYPES = {"flag": "bool", "choice": "str | None", "real": "float | None", "intege
          "lengths of labels": "Mapping[str | int, float] | None",
          "lengths of pairs of labels":
              "Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None",
-         "label values": "LabelValues | None", "names of label values": "Mapping[str, LabelValues] | None"}
+         "label values": "LabelValues | None", "integers": "LabelValues | None",
+         "names of label values": "Mapping[str, LabelValues] | None"}
 """The type of a keyword, by the kind of its option."""
 
 

@@ -41,7 +41,8 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
         The three distances of voxels, mm, in place of an affine, for arrays only; voxel (0, 0, 0) lies at the origin.
         The default is 1 mm.
     names
-        Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
+        Names of labels, as {1: "liver"}; or a file of names and colours: a table of ITK-SNAP, FreeSurfer or 3D Slicer
+        (.ctbl), or lines "value name". They replace those in the image.
     progress
         Is called with a podm.Progress a few times per second, by the thread that called mesh(). An exception that it
         raises ends the run, and mesh() raises it again.

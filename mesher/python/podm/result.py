@@ -68,6 +68,13 @@ class Mesh:
         """The name of each label by its value, "label 3" for a label without a name; without the background."""
         return dict(self._made.labels[1:])
 
+    @functools.cached_property
+    def colours(self) -> dict[int, tuple[int, int, int]]:
+        """The colour of each label that has one, by its value: red, green and blue from 0 to 255.
+
+        They come from the file of names, or from the image, a segmentation of 3D Slicer (.seg.nrrd)."""
+        return self._made.colours
+
     @property
     def background(self) -> int:
         """The value of the background in the image."""

@@ -111,6 +111,45 @@ class ImagesTest(TestCase):
             self.assertEqual(podm.mesh(labels, drop=3).names, {7: "label 7"})
             self.assertEqual(podm.mesh(labels, merge={"both": [3, 7]}).names, {3: "both"})
 
+    def segmentation(self):
+        """Returns a .seg.nrrd whose second layer covers a part of the first; both have the value 1."""
+        first, second = (balls() == 3).astype(np.uint8), np.zeros_like(balls())
+        second[6:9] = 1
+        fields = ["NRRD0004", "type: unsigned char", "dimension: 4", "space: left-posterior-superior",
+                  "sizes: 2 20 24 14", "space directions: none (1,0,0) (0,1,0) (0,0,1)",
+                  "kinds: list domain domain domain", "encoding: raw", "space origin: (0,0,0)",
+                  "Segment0_Name:=liver", "Segment0_LabelValue:=1", "Segment0_Layer:=0", "Segment0_Color:=1 0 0.2",
+                  "Segment1_Name:=slab", "Segment1_LabelValue:=1", "Segment1_Layer:=1"]
+        path = self.folder / "liver.seg.nrrd"
+        path.write_bytes("\n".join([*fields, "", ""]).encode() + np.stack([first, second]).tobytes("F"))
+        return path
+
+    def test_segments_bring_names_colours_and_layers(self):
+        path = self.segmentation()
+        with self.assertWarnsRegex(UserWarning, "segments of different layers share label values"):
+            mesh = podm.mesh(path)
+        self.assertEqual((mesh.names, mesh.colours), ({1: "liver", 2: "slab"}, {1: (255, 0, 51)}))
+        self.assertEqual(mesh.record["options"]["labels"]["layers"], [])
+        for layers, names in (("0", {1: "liver"}), (0, {1: "liver"}), ([1, 0], {1: "liver", 2: "slab"}),
+                              (np.array([1]), {2: "slab"})):
+            with self.assertWarns(UserWarning):
+                self.assertEqual(podm.mesh(path, layers=layers).names, names)
+        with self.assertWarnsRegex(UserWarning, "; layers sets the order of layers"):
+            podm.mesh(path, layers=[0, 1])
+        for layers in ([2], [0, 0], "a", [0.5], {}, -1):
+            with self.assertRaisesRegex(podm.Error, "layers"):
+                podm.mesh(path, layers=layers)
+        with self.assertRaisesRegex(podm.Error, "labels: layers: the image has no layers"):
+            podm.mesh(balls(), layers=[0])
+
+    def test_a_file_of_names_has_colours(self):
+        table = self.folder / "lut.txt"
+        table.write_text("#No. Label Name: R G B A\n3 Liver 221 130 101 0\n7 Spleen 157 108 162 0\n")
+        mesh = podm.mesh(balls(), names=table)
+        self.assertEqual(mesh.names, {3: "Liver", 7: "Spleen"})
+        self.assertEqual(mesh.colours, {3: (221, 130, 101), 7: (157, 108, 162)})
+        self.assertEqual(podm.mesh(balls()).colours, {})
+
     def test_numpys_numbers_and_truth_are_as_good_as_pythons(self):
         expected = hash_of(podm.mesh(balls(), radius=1.5, keep=[3], optimize=True))
         found = podm.mesh(balls(), radius=np.float32(1.5), keep=np.array([3], np.uint8), optimize=np.True_,

@@ -208,6 +208,34 @@ TEST(ReadVerifierImage, BytesOfTheOtherOrder) {
   expect_small_image(folder.write("a.mha", meta + bytes), kFromLps);
 }
 
+TEST(ReadVerifierImage, IntegersOf64BitsInNrrdAndMetaImage) {
+  const Folder folder;
+  auto voxels = two_voxels<std::int64_t>();
+  const auto nrrd = [&](const char* type) {
+    return replaced(kNrrdHeader, "uchar", type) + "encoding: raw\n\n" + bytes_of_values(voxels);
+  };
+  const auto meta = [&](const char* type) {
+    return replaced(kMetaHeader, "MET_UCHAR", type) + "ElementDataFile = LOCAL\n" + bytes_of_values(voxels);
+  };
+  for (const char* type : {"int64", "uint64", "long long int"})
+    expect_small_image(folder.write("a.nrrd", nrrd(type)), kFromLps);
+  for (const char* type : {"MET_LONG_LONG", "MET_ULONG_LONG"})
+    expect_small_image(folder.write("a.mha", meta(type)), kFromLps);
+  for (const std::int64_t value : {std::int64_t{-1}, std::int64_t{1} << 32, std::int64_t{1} << 62}) {
+    voxels[2] = value;
+    for (const std::string& path :
+         {folder.write("b.nrrd", nrrd("int64")), folder.write("b.mha", meta("MET_LONG_LONG"))}) {
+      try {
+        read_image(path);
+        ADD_FAILURE() << path << " was read";
+      } catch (const InputError& error) {
+        const std::string expected = "voxel (0, 1, 0) has the value " + std::to_string(value);
+        EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+      }
+    }
+  }
+}
+
 TEST(ReadVerifierSizeImage, TakesAnyNumberScaledAsTheHeaderSays) {
   const Folder folder;
   std::vector<double> values(24);

@@ -222,6 +222,27 @@ TEST_F(ReadMesh, TheWidthOfSmoothingThatTheFileStates) {
       expect_refused(folder_, name, bytes, {"promise", words});
 }
 
+TEST_F(ReadMesh, ColoursOfLabels) {
+  const auto files_with = [&](int components, int tuples, const std::string& numbers) {
+    const std::string sizes = std::to_string(components) + " " + std::to_string(tuples);
+    return std::map<std::string, std::string>{
+        {"a.vtu",
+         inserted(vtu_text(written_, {}), "<Piece",
+                  "<FieldData><DataArray type=\"Int32\" Name=\"label_colours\" NumberOfComponents=\"" +
+                      std::to_string(components) + "\" NumberOfTuples=\"" + std::to_string(tuples) +
+                      "\" format=\"ascii\">" + numbers + "</DataArray></FieldData>")},
+        {"a.vtk", inserted(legacy_vtk_text(written_, false, false), "POINTS",
+                           "FIELD FieldData 1\nlabel_colours " + sizes + " int\n" + numbers + "\n")}};
+  };
+  using Colours = std::map<LabelValue, std::array<std::uint8_t, 3>>;
+  for (const auto& [name, bytes] : files_with(4, 2, "7 255 0 51 2 1 2 3"))
+    EXPECT_EQ(read(name, bytes).label_colours, (Colours{{7, {255, 0, 51}}, {2, {1, 2, 3}}})) << name;
+  for (const auto& [name, bytes] : files_with(4, 1, "7 256 0 51"))
+    expect_refused(folder_, name, bytes, {"a label value and a colour from 0 to 255"});
+  for (const auto& [name, bytes] : files_with(3, 1, "255 0 51"))
+    expect_refused(folder_, name, bytes, {"a label value and a colour from 0 to 255"});
+}
+
 TEST_F(ReadMesh, VtuArraysOfTextAreNoLabels) {
   std::string vtu = vtu_text(written_, {});
   vtu.insert(vtu.find("<DataArray type=\"Float32\""),
