@@ -29,7 +29,8 @@ make_system() {
 in_system() {
   unshare --mount sh -c 'for d in proc sys dev; do mount --rbind /$d "$0/$d"; done
     cp /etc/resolv.conf "$0/etc/resolv.conf"
-    exec chroot "$0" env -i PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin HOME=/root DEBIAN_FRONTEND=noninteractive \
+    exec chroot "$0" env -i PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin HOME=/root \
+      DEBIAN_FRONTEND=noninteractive \
       PODM_EXPECTED_VERSION="$1" sh -euc "cd /podm; $2"' "$scratch/$1" "$version" "$2"
 }
 
@@ -52,7 +53,7 @@ check_older() {
 }
 
 check_deb() {
-  # What a package of one release, which nobody uploads, does not have: a bug number, hardening flags.
+  # These packages are of no archive: they have no bug number and no hardening flags.
   lintian --fail-on error --suppress-tags bogus-mail-host $debs
   make_system deb bookworm apt-utils
   # shellcheck disable=SC2086  # a list of files

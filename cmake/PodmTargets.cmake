@@ -21,8 +21,8 @@ target_compile_options(podm_flags INTERFACE ${podm_march} -ffp-contract=off -fno
                                             -Wno-psabi)  # vectors are passed only within a file
 target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # keeps the GPL parts of CGAL out
 # The check that a program makes before it uses an instruction of x86-64-v3. A program links it, no library does.
-add_library(podm_required_processor OBJECT cmake/required_processor.cpp)
 if(PODM_MARCH STREQUAL "x86-64-v3" AND NOT PODM_SANITIZE)  # sanitizers have to be set up first
+  add_library(podm_required_processor OBJECT cmake/required_processor.cpp)
   set(PODM_REQUIRED_PROCESSOR $<TARGET_OBJECTS:podm_required_processor>)
 endif()
 

@@ -1,13 +1,14 @@
-// Part of each program that is compiled for x86-64-v3, but itself compiled for every x86-64 processor: a processor
-// without these instructions gets a sentence, and not the signal SIGILL. The function runs before all other code of the
-// program, constructors of static variables included.
+// Part of each program that is compiled for x86-64-v3, but itself compiled for every x86-64 processor: a
+// processor without these instructions gets a sentence, and not the signal SIGILL. The function runs before
+// all other code of the program, constructors of static variables included.
 #include <unistd.h>
 
 namespace {
 
 constexpr int kBadInput = 2;
 constexpr char kSentence[] =
-    "this processor has no AVX2, BMI2 or FMA, which this program needs; take one of the level x86-64-v3 (2013 or "
+    "this processor has no AVX2, BMI2 or FMA, which this program needs; take one of the level x86-64-v3 "
+    "(2013 or "
     "later), or build the sources with -DPODM_MARCH=x86-64\n";
 
 void check_processor(int, char**, char**) {

@@ -17,12 +17,9 @@ namespace podm::bench {
 namespace {
 
 Programs default_programs() {
-  return {beside_this_program("podm"),
-          beside_this_program("podm-verify"),
-          share_of_this_program("peers"),
-          beside_this_program("podm-bench"),
-          share_of_this_program("likwid"),
-          share_of_this_program("solvers/dolfinx/run")};
+  return {beside_this_program("podm"),     beside_this_program("podm-verify"),
+          share_of_this_program("peers"),  beside_this_program("podm-bench"),
+          share_of_this_program("likwid"), share_of_this_program("solvers/dolfinx/run")};
 }
 
 // Adds an option whose value help shows as `type`.

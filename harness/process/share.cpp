@@ -11,7 +11,9 @@ std::filesystem::path folder_of_this_program() {
 
 }  // namespace
 
-std::string beside_this_program(const std::string& name) { return (folder_of_this_program() / name).string(); }
+std::string beside_this_program(const std::string& name) {
+  return (folder_of_this_program() / name).string();
+}
 
 std::string share_of_this_program(const std::string& name) {
   return (folder_of_this_program().parent_path() / PODM_BENCH_SHARE / name).string();

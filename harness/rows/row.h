@@ -204,7 +204,7 @@ struct EnvironmentRecord : MachineRecord {
   }
 };
 
-/// What is known of a trial when it has ended.
+/// The result of a trial when it has ended.
 struct TrialOutcome {
   Status status = Status::kFailed;
   std::string reason;                                   ///< the reason of a status that is not kOk

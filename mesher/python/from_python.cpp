@@ -200,12 +200,12 @@ void assign(LayerOrder& to, const py::handle& value, const Declaration& of) {
   const bool is_iterable = is_a(value, "collections.abc", "Iterable");
   const py::object given = py::reinterpret_borrow<py::object>(value);
   const py::list numbers = is_iterable ? py::list(given) : py::list(py::make_tuple(given));
-  std::string text;
+  std::vector<std::string> texts;
   for (const py::handle number : numbers) {
     if (!is_integral(number)) fail(keyword, "numbers of layers from bottom to top, as [1, 0],", value);
-    text += (text.empty() ? "" : ",") + text_of_number(number);
+    texts.push_back(text_of_number(number));
   }
-  cli::parse_into(to, text, of);
+  cli::parse_into(to, fmt::format("{}", fmt::join(texts, ",")), of);
 }
 
 void assign(cli::Merges& to, const py::handle& value, const Declaration& of) {

@@ -11,8 +11,8 @@ from views.colours import colours_of_labels
 
 MAX_CELLS = 200_000
 SCRIPT = Path(__file__).with_name("viewer.js")
-HELP = """cut open: those whose centres lie beyond the plane are left out. Drag to turn; wheel, two fingers, + and - zoom;
-arrow keys turn too."""
+HELP = """cut open: those whose centres lie beyond the plane are left out. Drag to turn; wheel, two fingers, + and -
+zoom; arrow keys turn too."""
 # The elements that viewer.js fills.
 FRAME = """<div id="viewer">
 <canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>

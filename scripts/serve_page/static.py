@@ -4,7 +4,8 @@ from pathlib import Path
 from report_page import viewer
 
 HERE = Path(__file__).parent
-TYPES = {".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8"}
+TYPES = {".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
+         ".js": "text/javascript; charset=utf-8"}
 # NiiVue makes images and fonts of data that it carries.
 POLICY = ("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
           "connect-src 'self' data:; form-action 'none'; base-uri 'none'; frame-ancestors 'none'")

@@ -1,8 +1,8 @@
 // podm serve: becomes a script, which runs this program for the page that it serves.
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.h"
+#include "cli/processes/own_program.h"
 #include "cli/processes/python_scripts.h"
 #include "cli/reports/json_text.h"
 
@@ -10,7 +10,7 @@ namespace podm::cli {
 
 int run(const ServeCommand& command) {
   const nlohmann::ordered_json request = {
-      {"programs", std::filesystem::read_symlink("/proc/self/exe").parent_path().string()},
+      {"programs", folder_of_own_program().string()},
       {"port", command.port},
       {"browser", !command.without_browser},
       {"max_upload_mib", command.max_upload_mib},

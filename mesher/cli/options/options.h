@@ -29,12 +29,11 @@ struct ImageArguments {
 
   static constexpr auto options() {
     using I = ImageArguments;
-    return std::tuple{
-        nested(&I::selection),
-        option(&I::label_names_path, "label-names", "FILE", OptionGroup::kLabels,
-               "names and colours of labels: a table of ITK-SNAP, FreeSurfer or 3D Slicer\n"
-               "(.ctbl), or lines \"value name\"; they replace those in the image",
-               {.unset = "none", .uses = kInPodm | kOnRanks | kInPython, .keyword = "names"})};
+    return std::tuple{nested(&I::selection),
+                      option(&I::label_names_path, "label-names", "FILE", OptionGroup::kLabels,
+                             "names and colours of labels: a table of ITK-SNAP, FreeSurfer or 3D Slicer\n"
+                             "(.ctbl), or lines \"value name\"; they replace those in the image",
+                             {.unset = "none", .uses = kInPodm | kOnRanks | kInPython, .keyword = "names"})};
   }
 };
 
@@ -82,12 +81,13 @@ struct MeshCommand {
                "bound within WIDTH mm of the interface of two labels, by name or value (the\n"
                "background by its value), e.g. liver,0=1:3; repeatable",
                {.unset = "none; WIDTH: MM", .uses = kOfPlaces, .not_on_ranks = kNoSizesByPlace}),
-        option(&M::max_memory, "max-memory-gib", "GIB", kLimits, "memory of the process, GiB",
-               {.unset = kDefaultMemory,
-                .record = "max_memory_bytes",
-                .uses = kInPodm | kOnRanks | kInPython,
-                .quantity = "number of GiB",
-                .help_on_ranks = "memory of each process, GiB; the processes of a machine share the\ndefault"}),
+        option(
+            &M::max_memory, "max-memory-gib", "GIB", kLimits, "memory of the process, GiB",
+            {.unset = kDefaultMemory,
+             .record = "max_memory_bytes",
+             .uses = kInPodm | kOnRanks | kInPython,
+             .quantity = "number of GiB",
+             .help_on_ranks = "memory of each process, GiB; the processes of a machine share the\ndefault"}),
         option(&M::mesh_path, "output", "MESH", kOutput,
                "mesh file: .vtu or .vtk (VTK), .msh (Gmsh), .xdmf (DOLFINx), .inp (Abaqus,\n"
                "CalculiX), .e or .exo (Exodus II), .mesh (Medit), .node or .ele (TetGen)",
@@ -211,8 +211,8 @@ struct ServeCommand {
                {.unset = "a free one", .uses = kInPodm, .most = 65535}),
         option(&S::without_browser, "no-browser", "", kRun, "only print the address",
                {.unset = "a browser opens it", .uses = kInPodm}),
-        option(&S::max_upload_mib, "max-upload-mib", "MIB", kRun,
-               "largest image that the page may send, MiB", {.uses = kInPodm, .quantity = "number of MiB"}),
+        option(&S::max_upload_mib, "max-upload-mib", "MIB", kRun, "largest image that the page may send, MiB",
+               {.uses = kInPodm, .quantity = "number of MiB"}),
         option(&S::max_memory, "max-memory-gib", "GIB", kRun,
                "memory of each program that the page runs, GiB",
                {.unset = kDefaultMemory, .uses = kInPodm, .quantity = "number of GiB"}),

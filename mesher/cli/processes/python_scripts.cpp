@@ -13,8 +13,8 @@
 namespace podm::cli {
 namespace {
 
-// Returns the interpreter. By default it is the one that finds Debian's modules. The variable is set by the programs
-// that pip installs, and names the interpreter that finds pip's modules.
+// Returns the interpreter. By default it is the one that finds Debian's modules. The variable is set by the
+// programs that pip installs, and names the interpreter that finds pip's modules.
 std::string python() {
   const char* const chosen = std::getenv("PODM_PYTHON");
   return chosen != nullptr ? chosen : "/usr/bin/python3";

@@ -8,6 +8,7 @@
 
 #include "cli/options/options_for_image.h"
 #include "cli/processes/process_memory.h"
+#include "cli/reports/json_text.h"
 #include "distributed/messages.h"
 #include "podm/mesh_io.h"
 

@@ -30,9 +30,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json selection_of(const LabelSelection& selection) {
-  return {{"background", selection.background}, {"keep", selection.keep},
-          {"drop", selection.drop},             {"merge", selection.merges},
-          {"layers", selection.layers},         {"drop_islands_mm3", selection.drop_islands_mm3}};
+  return {{"background", selection.background},
+          {"keep", selection.keep},
+          {"drop", selection.drop},
+          {"merge", selection.merges},
+          {"layers", selection.layers},
+          {"drop_islands_mm3", selection.drop_islands_mm3}};
 }
 
 Json dropped_islands_of(const LabelImage& image) {

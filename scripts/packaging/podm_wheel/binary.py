@@ -1,4 +1,4 @@
-"""What an ELF file needs from the system on which it runs."""
+"""The needs of an ELF file: libraries and symbol versions of the system on which it runs."""
 import re
 import subprocess
 

@@ -1,4 +1,4 @@
-"""What Ninja knows about a build folder."""
+"""A build folder as Ninja knows it."""
 import json
 import re
 import shlex

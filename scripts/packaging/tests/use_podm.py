@@ -1,4 +1,4 @@
-"""Uses an installation of podm as a new user does: the programs on the PATH and the Python package, on a system that has
+"""Uses an installation of podm as a new user does: programs on the PATH and the Python package, on a system that has
 Python and numpy and perhaps nothing else. ci/packages.sh runs this file inside such systems.
 
 Environment: PODM_EXPECTED_VERSION; PODM_WITHOUT_PACKAGE=1 if the installation holds the programs only."""
@@ -13,7 +13,8 @@ WITHOUT_PACKAGE = bool(os.environ.get("PODM_WITHOUT_PACKAGE"))
 ENDINGS = (".vtu", ".vtk", ".msh", ".mesh", ".inp", ".e", ".exo", ".ele", ".xdmf")
 READ_BY_VERIFIER = set(ENDINGS) - {".xdmf"}
 NRRD = ("NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 16 16 16\n"
-        "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: {}\nspace origin: (0,0,0)\n\n")
+        "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: {}\n"
+        "space origin: (0,0,0)\n\n")
 EXPERIMENT = """
 title = "Small"
 claim = "A phantom is meshed."
