@@ -132,9 +132,12 @@ std::vector<Segment> parse_segments(const std::string& path, const std::map<std:
   for (const std::uint32_t number : numbers) {
     const SegmentFields of(path, fields, number);
     of.check_extent();
-    segments.push_back({.label = {.value = 0, .name = of.name(), .colour = of.colour()},
-                        .stored_value = is_old ? 1 : of.value(),
-                        .layer = is_old ? segments.size() : of.layer(num_layers)});
+    const std::size_t place = segments.size();
+    Segment& segment = segments.emplace_back();
+    segment.label.name = of.name();
+    segment.label.colour = of.colour();
+    segment.stored_value = is_old ? 1 : of.value();
+    segment.layer = is_old ? place : of.layer(num_layers);
   }
   refuse_equal_values(path, segments);
   number_labels(segments);

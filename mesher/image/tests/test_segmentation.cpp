@@ -266,7 +266,9 @@ TEST_F(Segmentation, FaultsOfTheHeaderNameTheirField) {
       {"Segment1_LabelValue:=2\n", "Segment1_LabelValue:=-2\n", "Segment1_LabelValue '-2' is not a label"},
       {"Segment1_LabelValue:=2\n", "Segment1_LabelValue:=4294967296\n", "is not a label"},
       {"Segment1_LabelValue:=2\n", "Segment1_LabelValue:=1\n",
-       "segment 'ulna' and segment 'radius' have the same label value 1 in layer 0"},
+       "segment 'ulna of the patient's left arm' and segment 'radius of the patient's left arm' have the "
+       "same "
+       "label value 1 in layer 0"},
       {"Segment2_Layer:=1\n", "", "Segment2 has no layer (Segment2_Layer)"},
       {"Segment2_Layer:=1\n", "Segment2_Layer:=2\n",
        "Segment2_Layer '2' is not a layer of the file, which has 2"},
@@ -279,7 +281,9 @@ TEST_F(Segmentation, FaultsOfTheHeaderNameTheirField) {
       {"Segment0_Extent:=0 4 0 3 0 2\n", "Segment0_Extent:=0 4 0 3 0\n",
        "Segment0_Extent '0 4 0 3 0' is not six integers"},
       {"Segment0_Extent:=0 4 0 3 0 2\n", "Segment0_Extent:=0 4 0 3 0 two\n", "Segment0_Extent"}};
-  const std::string bytes = arm().bytes();
+  Bytes file = arm();
+  for (SegmentInFile& segment : file.segments) segment.name += " of the patient's left arm";
+  const std::string bytes = file.bytes();
   for (const BadHeader& bad : kCases) {
     std::string changed = bytes;
     const std::size_t at = changed.find(bad.from);
