@@ -74,8 +74,8 @@ class Child:
         start_s = time.monotonic()
         while self._process.poll() is None and not self._broken:
             if _resident_bytes(self._process.pid) > self._limits.memory_bytes:
-                self._broken = (f"it needs more than the {self._limits.memory_bytes / 2**30:.3g} GiB "
-                                "that a program may take")
+                gib = self._limits.memory_bytes / 2**30
+                self._broken = f"it needs more than the {gib:.3g} GiB that a program may take"
             elif time.monotonic() - start_s > self._limits.seconds:
                 self._broken = f"it takes more than the {self._limits.seconds:g} s that a program may take"
             if self._broken:
