@@ -34,11 +34,12 @@ def glibc_version(path):
 def check(path):
     """Raises Unportable if the file needs a library that is neither of the C library nor beside it in the wheel, or if
     it looks for libraries outside the wheel."""
-    for folder in search_path(path):
-        if folder.partition("/")[0] != "$ORIGIN":
-            raise Unportable(f"{path}: it looks for libraries in {folder}")
-    beside = {file.name for folder in search_path(path)
+    inside = [folder for folder in search_path(path) if folder.partition("/")[0] == "$ORIGIN"]
+    beside = {file.name for folder in inside
               for file in (path.parent / folder.removeprefix("$ORIGIN").lstrip("/")).glob("*")}
     missing = needed(path) - OF_THE_SYSTEM - beside
     if missing:
         raise Unportable(f"{path}: it needs {', '.join(sorted(missing))}")
+    outside = [folder for folder in search_path(path) if folder not in inside]
+    if outside:
+        raise Unportable(f"{path}: it looks for libraries in {', '.join(outside)}")
