@@ -18,6 +18,10 @@ SLOT_TRIES, SLOT_PERIOD_S = 10, 0.2
 SECONDS_TO_WRITE = 60  # beyond its limit, for a mesh that reached it
 
 
+class Replaced(Fault):
+    """A later request of the same page made this one needless."""
+
+
 class Workspace:
     """`tools`: what all pages share (server.Tools). Files that were uploaded and files that are made have folders of
     their own. Programs run in the folder of uploads, so that their messages name files as the user does."""
@@ -110,18 +114,23 @@ class Workspace:
                 "python": settings.python_lines(self.image, self.table, self.tools.declared)}
 
     def predict(self, settings):
-        """Returns what podm info --plan predicts. A later call, or one of run(), ends this one."""
-        return self._info([*settings.of_labels(), "--plan", *settings.of_cells()])["plan"]
+        """Returns what podm info --plan predicts. A later call, or one of run(), ends this one, which returns None."""
+        try:
+            return self._info([*settings.of_labels(), "--plan", *settings.of_cells()])["plan"]
+        except Replaced:
+            return None
 
     def _info(self, arguments):
         """Returns what podm info reports. Raises Fault with its message if it fails."""
-        self._take_slot()
+        mine = self._take_slot()
         try:
             self._querying = self._start([self.tools.podm, "info", *self._image_arguments(), "--json", *arguments])
             ended = self._querying.wait()
         finally:
             self._querying = self._child = None
             self.tools.slot.release()
+        if self._latest is not mine:
+            raise Replaced("A later request replaced this one.", 409)
         if ended.exit_code != 0:
             raise Fault(f"{self.image}: {ended.broken}." if ended.broken else _complaint(ended))
         return json.loads(ended.output)
@@ -135,10 +144,10 @@ class Workspace:
                 query.kill()
             if self.tools.slot.acquire(timeout=SLOT_PERIOD_S):
                 if self._latest is mine:
-                    return
+                    return mine
                 self.tools.slot.release()
             if self._latest is not mine:
-                raise Fault("A later request replaced this one.", 409)
+                raise Replaced("A later request replaced this one.", 409)
         raise Fault("Another job runs; this server runs one at a time.", 409)
 
     def _start(self, command, on_line=None, limits=None):

@@ -48,7 +48,7 @@ async function predict() {
   const { signal } = asking;
   await attempt(async () => {
     const plan = await post("plan", settings(), signal);
-    if (signal.aborted) return;
+    if (signal.aborted || plan === null) return;
     showPrediction(one("prediction"), plan, (value) => labels.nameOf(value), slices.moveTo);
     one("prediction").classList.remove("old");
   });
