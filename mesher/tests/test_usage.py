@@ -24,7 +24,7 @@ OPTIONS = {
              "--output", "--plan", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
              "--target-elements", "--target-tolerance", "--smooth", "--min-dihedral", "--optimize",
              "--dihedral-bounds", "--algorithm", "--threads", "--oversubscribe"],
-    "phantom": ["--size", "--output"],
+    "phantom": ["--size", "--output", "--label-names"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
              "--background", "--no-legend"],
     "serve": ["--port", "--no-browser", "--max-upload-mib", "--max-memory-gib", "--max-seconds"],
