@@ -56,11 +56,15 @@ class InBrowser(ServeTestCase):
 
     def drop(self, *paths):
         self.browser.drop("#drop", *(paths or [self.image]))
-        self.wait_for("!document.querySelector('#settings').hidden && !document.querySelector('#slices').hidden")
+        self.wait_for("!document.querySelector('#settings').hidden && document.querySelector('#slices').dataset.drawn")
 
     def mesh(self):
         self.click("#run")
+        self.wait_for_claims()
+
+    def wait_for_claims(self):
         self.wait_for("document.querySelectorAll('.findings .verdict').length > 0")
+        self.wait_for("document.querySelector('#viewer canvas')?.checkVisibility()")
 
     def test_from_drop_to_turning_mesh_to_download(self):
         self.go()
@@ -169,7 +173,7 @@ class InBrowser(ServeTestCase):
         self.go()
         self.tab_to("files")
         self.browser.choose("#files", self.image)  # the dialogue is the system's
-        self.wait_for("!document.querySelector('#settings').hidden && !document.querySelector('#slices').hidden")
+        self.wait_for("!document.querySelector('#settings').hidden && document.querySelector('#slices').dataset.drawn")
         way = self.tab_to("place-k")
         before = self.browser.screenshot("#slices canvas")
         self.browser.press(*RIGHT)
@@ -182,7 +186,7 @@ class InBrowser(ServeTestCase):
         way += self.tab_to("run")
         self.assertRegex(self.text("#command"), "--radius 30 ")
         self.browser.press(*ENTER)
-        self.wait_for("document.querySelectorAll('.findings .verdict').length > 0")
+        self.wait_for_claims()
         way += self.tab_to("The mesh in three dimensions, cells coloured by label")
         before = self.browser.screenshot("#viewer canvas")
         self.browser.press(*RIGHT)

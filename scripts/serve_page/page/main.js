@@ -8,7 +8,7 @@ import * as slices from "./slices.js";
 
 const one = (id) => document.getElementById(id);
 const QUIET_MS = 300;  // after the last change, before a prediction
-let options, labels, sliders, isBusy = false, timer = 0, asking = new AbortController();
+let options, labels, sliders, isBusy = false, timer = 0, asking = new AbortController(), showing = new AbortController();
 
 // Shows a fault as one sentence; none clears it.
 function say(fault = "") {
@@ -27,8 +27,11 @@ async function attempt(action) {
 
 const settings = () => ({ ...labels.settings(), ...sliders.settings() });
 
+// Answers may overtake each other; only that of the last request counts.
 async function showLines() {
-  const { command, python } = await post("lines", settings());
+  showing.abort();
+  showing = new AbortController();
+  const { command, python } = await post("lines", settings(), showing.signal);
   one("command").textContent = command;
   one("python").textContent = python;
 }

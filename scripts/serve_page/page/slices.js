@@ -54,6 +54,8 @@ export function moveTo(voxel) {
 export async function show(root, info) {
   root.hidden = info.shown === null;
   if (root.hidden) return "It is too large for slices here.";
+  root.removeAttribute("data-drawn");
+  makePlaces(root, info.size);
   try {
     if (!viewer) await start(root);
     await viewer.loadVolumes([{ url: address("image"), name: "image.nii" }]);
@@ -61,8 +63,8 @@ export async function show(root, info) {
     root.hidden = true;
     return `Its slices cannot be drawn: ${error.message}.`;
   }
-  makePlaces(root, info.size);
   moveTo(info.size.map((length) => Math.floor(length / 2)));
+  root.dataset.drawn = "yes";
   return "";
 }
 
