@@ -364,7 +364,8 @@ class Drawing(unittest.TestCase):
         self.assertEqual(set(made.figures), {"fig4a", "fig4b"})
         self.assertIn("no verified", made.figures["fig4a"].get_label())
         self.assertEqual(set(made.missing),
-                         {"fig1", "fig2b", "deviation", "lost", "distributed", "dihedral", "solvers", "pareto", "corpus"})
+                         {"fig1", "fig2b", "deviation", "lost", "distributed", "dihedral", "solvers", "pareto",
+                          "corpus"})
 
     def test_quality(self):
         self.assertEqual(len(fig1.fig1(synthetic.report()).axes), 3)
