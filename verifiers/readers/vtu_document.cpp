@@ -97,7 +97,8 @@ class VtuParser : XmlParser {
     if (elements_.size() < 2) return nullptr;
     const std::string& section = elements_[elements_.size() - 2];
     if (section == "FieldData")
-      return name.starts_with("space:") || name.starts_with("label:") || name.starts_with("promise:")
+      return name.starts_with("space:") || name.starts_with("label:") || name.starts_with("promise:") ||
+                     name == kColourArray
                  ? &document_.field_data
                  : nullptr;
     if (document_.pieces.empty()) return nullptr;
