@@ -64,8 +64,8 @@ mesh() {
     *) angles="--min-dihedral 15" ;;
   esac
   # shellcheck disable=SC2086  # a list of words
-  "$build/bin/podm" mesh "$image" --radius "$radius" $angles --algorithm $algorithm --threads 4 --oversubscribe \
-    --contention $contention --seed "$run" --quiet -o "$build/run.vtu" "$@"
+  timeout $most_seconds_to_find "$build/bin/podm" mesh "$image" --radius "$radius" $angles --algorithm $algorithm \
+    --threads 4 --oversubscribe --contention $contention --seed "$run" --quiet -o "$build/run.vtu" "$@"
 }
 
 start=$(date +%s)
@@ -78,7 +78,7 @@ while [ "$(seconds_since "$start")" -lt "$seconds" ]; do
 done
 echo "== $count runs without a finding"
 
-for fault in one_lock no_lock three_locks three_in_cavity relaxed_lock relaxed_unlock relaxed_distribution; do
+for fault in one_lock no_lock three_locks three_in_cavity relaxed_lock relaxed_unlock; do
   export PODM_PLANTED_FAULT=$fault
   start=$(date +%s)
   count=0

@@ -13,13 +13,13 @@
 // Sources that bring their own locks include this file. All other sources include podm.h.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <mutex>
 
 #include "algorithms/computing_node.h"
 #include "algorithms/podm.h"
-#include "delaunay/planted_fault.h"
 #include "workers/accounting.h"
 
 namespace podm {
@@ -119,9 +119,7 @@ void distribute(const AccountedLeafCells<LeafCells, Time>& cells,
     for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
          slice = next_slice++)
       cells.distribute(self, slice);
-    // Release and acquire: the last worker sees the cells that the others distributed.
-    if (num_at_work.fetch_sub(1, order_of(OrderedAccess::kDistribution, std::memory_order_acq_rel)) > 1)
-      return;
+    if (--num_at_work > 0) return;
     cells.share_out(self, queue, over);
   });
 }

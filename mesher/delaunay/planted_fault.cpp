@@ -27,8 +27,7 @@ constexpr std::array kFaults{Fault{.name = "no_lock", .locks = {.to_read = 0}},
                              Fault{.name = "relaxed_peek_point", .relaxed = OrderedAccess::kPeekPoint},
                              Fault{.name = "relaxed_place", .relaxed = OrderedAccess::kPlace},
                              Fault{.name = "relaxed_peek_cell", .relaxed = OrderedAccess::kPeekCell},
-                             Fault{.name = "relaxed_renew", .relaxed = OrderedAccess::kRenew},
-                             Fault{.name = "relaxed_distribution", .relaxed = OrderedAccess::kDistribution}};
+                             Fault{.name = "relaxed_renew", .relaxed = OrderedAccess::kRenew}};
 
 Fault named_in_environment() {
   const char* const asked = std::getenv("PODM_PLANTED_FAULT");

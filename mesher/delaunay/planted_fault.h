@@ -20,13 +20,12 @@ struct LocksTaken {
 /// relaxed because they pass no data, or have the default order.
 enum class OrderedAccess {
   kNone,
-  kLock,          // VertexLocks::try_lock
-  kUnlock,        // VertexLocks::unlock_all
-  kPeekPoint,     // peek_point
-  kPlace,         // place
-  kPeekCell,      // Mesh::peek_two_vertices
-  kRenew,         // Mesh::renew
-  kDistribution,  // the count of workers that distribute cells to leaves (algorithms/leaf_loop.h)
+  kLock,       // VertexLocks::try_lock
+  kUnlock,     // VertexLocks::unlock_all
+  kPeekPoint,  // peek_point
+  kPlace,      // place
+  kPeekCell,   // Mesh::peek_two_vertices
+  kRenew,      // Mesh::renew
 };
 
 #if defined(PODM_INTERLEAVING) || defined(PODM_CHECK_LOCKS)
@@ -36,8 +35,7 @@ enum class OrderedAccess {
 LocksTaken locks_taken();
 void plant_fault(LocksTaken locks);
 /// Returns `order`, or the relaxed order for the access that $PODM_PLANTED_FAULT selects: relaxed_lock,
-/// relaxed_unlock, relaxed_peek_point, relaxed_place, relaxed_peek_cell, relaxed_renew or
-/// relaxed_distribution.
+/// relaxed_unlock, relaxed_peek_point, relaxed_place, relaxed_peek_cell or relaxed_renew.
 std::memory_order order_of(OrderedAccess access, std::memory_order order);
 #else
 constexpr LocksTaken locks_taken() { return {}; }
