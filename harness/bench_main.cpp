@@ -184,25 +184,19 @@ void add_pack(CLI::App& program, int& exit_code) {
   command->results_folder = kResultsFolder;
   command->experiments_folder = kExperimentsFolder;
   CLI::App& app = *program.add_subcommand("pack", "pack rows, logs and hashes into an archive for others");
-  app.add_option("EXPERIMENT", command->experiments, "pack only the rows of these experiments [default: all]")
-      ->option_text(" ");
-  app.add_option("-o,--output", command->output, "the archive, .tar.gz")->option_text("FILE")->required();
-  app.add_option("--submitter", command->submitter, "your name, and your institution")
-      ->option_text("TEXT")
-      ->required();
-  app.add_option(
-         "--division", command->division,
-         "closed: inputs and bounds of the experiments; open: anything that you declare [default: closed]")
-      ->option_text("closed|open");
-  app.add_option("--declaration", command->declaration_path,
-                 "a text about how the rows were made; required for open [default: none]")
-      ->option_text("FILE");
-  app.add_option("--results", command->results_folder,
-                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
-      ->option_text("FOLDER");
-  app.add_option("--experiments", command->experiments_folder,
-                 fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder))
-      ->option_text("FOLDER");
+  add_option(app, "EXPERIMENT", " ", command->experiments,
+             "pack only the rows of these experiments [default: all]");
+  add_option(app, "-o,--output", "FILE", command->output, "the archive, .tar.gz")->required();
+  add_option(app, "--submitter", "TEXT", command->submitter, "your name, and your institution")->required();
+  add_option(
+      app, "--division", "closed|open", command->division,
+      "closed: inputs and bounds of the experiments; open: anything that you declare [default: closed]");
+  add_option(app, "--declaration", "FILE", command->declaration_path,
+             "a text about how the rows were made; required for open [default: none]");
+  add_option(app, "--results", "FOLDER", command->results_folder,
+             fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
+  add_option(app, "--experiments", "FOLDER", command->experiments_folder,
+             fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder));
   app.callback([command, &exit_code] { exit_code = pack_submission(*command); });
 }
 
@@ -212,18 +206,15 @@ void add_check(CLI::App& program, int& exit_code) {
   command->experiments_folder = kExperimentsFolder;
   CLI::App& app =
       *program.add_subcommand("check", "judge a packed archive; exits with 1 when it is not valid");
-  app.add_option("ARCHIVE", command->archive, "an archive of podm-bench pack")->option_text(" ")->required();
-  app.add_option("--sample", command->num_meshes,
-                 fmt::format("meshes to make again on this machine [default: {}]", command->num_meshes))
-      ->option_text("N");
-  app.add_option("--sample-seed", command->seed, "draws these meshes [default: at random]")->option_text("N");
-  app.add_option("--image", command->images,
-                 "a label image, or a folder of them, that rows may have read; repeatable [default: none]")
-      ->option_text("FILE|FOLDER")
+  add_option(app, "ARCHIVE", " ", command->archive, "an archive of podm-bench pack")->required();
+  add_option(app, "--sample", "N", command->num_meshes,
+             fmt::format("meshes to make again on this machine [default: {}]", command->num_meshes));
+  add_option(app, "--sample-seed", "N", command->seed, "draws these meshes [default: at random]");
+  add_option(app, "--image", "FILE|FOLDER", command->images,
+             "a label image, or a folder of them, that rows may have read; repeatable [default: none]")
       ->allow_extra_args(false);
-  app.add_option("--experiments", command->experiments_folder,
-                 fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder))
-      ->option_text("FOLDER");
+  add_option(app, "--experiments", "FOLDER", command->experiments_folder,
+             fmt::format("folder of the suite's experiments [default: {}]", kExperimentsFolder));
   add_programs(app, command->programs);
   app.callback([command, &exit_code] { exit_code = check_submission(*command); });
 }
