@@ -17,4 +17,4 @@ def check_processor(description: str = "/proc/cpuinfo") -> None:
     missing = _NEEDED.get(MARCH, set()) - set(flags or ())
     if flags and missing:
         raise ImportError(f"podm: this processor has no {', '.join(sorted(missing))}; the package needs one of the "
-                          "level x86-64-v3 (2013 or later)")
+                          f"level {MARCH} (2013 or later)")

@@ -1,5 +1,5 @@
-"""Uses an installation of podm as a new user does: programs on the PATH and the Python package, on a system that has
-Python and numpy and perhaps nothing else. ci/packages.sh runs this file inside such systems.
+"""Uses an installation of podm as a new user does: the programs on the PATH and the Python package, on a system that
+has Python and numpy and perhaps nothing else. ci/packages.sh runs this file inside such systems.
 
 Environment: PODM_EXPECTED_VERSION; PODM_WITHOUT_PACKAGE=1 if the installation holds the programs only."""
 import json
@@ -13,7 +13,7 @@ WITHOUT_PACKAGE = bool(os.environ.get("PODM_WITHOUT_PACKAGE"))
 ENDINGS = (".vtu", ".vtk", ".msh", ".mesh", ".inp", ".e", ".exo", ".ele", ".xdmf")
 READ_BY_VERIFIER = set(ENDINGS) - {".xdmf"}
 NRRD = ("NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 16 16 16\n"
-        "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: {}\n"
+        "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: raw\n"
         "space origin: (0,0,0)\n\n")
 EXPERIMENT = """
 title = "Small"
@@ -54,7 +54,7 @@ class Installation(unittest.TestCase):
 
     def test_images_of_each_reader_are_meshed_and_proved(self):
         self.run_program("podm", "phantom", "spheres", "--size", "16", "-o", "a.nii.gz")
-        (self.folder / "a.nrrd").write_bytes(NRRD.format("raw").encode() + cube())
+        (self.folder / "a.nrrd").write_bytes(NRRD.encode() + cube())
         (self.folder / "a.raw").write_bytes(cube())
         (self.folder / "a.mhd").write_text("NDims = 3\nDimSize = 16 16 16\nElementType = MET_UCHAR\n"
                                            "ElementSpacing = 1 1 1\nElementDataFile = a.raw\n")
