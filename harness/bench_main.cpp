@@ -224,7 +224,9 @@ int main_or_throw(int argc, char** argv) {
                    "podm-bench");
   program.set_version_flag("--version", "podm-bench " PODM_VERSION);
   program.require_subcommand(1);
-  program.footer("Exit codes: 0 success, 1 a trial failed or missed a guarantee, 2 bad usage or input.");
+  program.footer(
+      "Exit codes: 0 success, 1 a trial failed or missed a guarantee, 2 bad usage or input, "
+      "3 internal error.");
   int exit_code = 0;
   add_run(program, exit_code);
   add_list(program, exit_code);

@@ -140,8 +140,8 @@ void add_serve_command(CLI::App& program, ServeCommand& command) {
   CLI::App& app = add_command(program, "serve", "mesh an image in a browser, on this machine alone");
   add_declared_options(app, command, kInPodm, "Options");
   end_help(app,
-           "The address that it prints holds a secret: who has it uses the page. Ctrl-C ends the server and\n"
-           "removes all images and meshes of the page.");
+           "The printed address holds a secret, without which the server refuses all requests. Ctrl-C ends\n"
+           "the server and removes all images and meshes of the page.");
 }
 
 void add_convert_command(CLI::App& program, ConvertCommand& command) {

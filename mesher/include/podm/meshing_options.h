@@ -207,8 +207,8 @@ struct OptimizeOptions {
             "stay, but the mesh is no longer Delaunay",
             {.unset = "no", .uses = kInAll | kInPlan, .not_on_ranks = "optimisation works on a whole mesh"}),
         option(&O::dihedral_bounds_deg, "dihedral-bounds", "MIN,MAX", kDihedral,
-               "least and largest dihedral angle of a cell, degrees; the aim is half as much\n"
-               "again; cells that surfaces keep beyond the bounds are counted",
+               "least and largest dihedral angle of a cell, degrees; the aim is 3/2 of MIN, and\n"
+               "4/3 as far below 180 as MAX; cells that stay beyond the bounds are counted",
                {.uses = kInAll | kInPlan,
                 .not_on_ranks = "optimisation works on a whole mesh",
                 .needs = "optimize"})};
