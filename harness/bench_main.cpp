@@ -186,8 +186,9 @@ void add_pack(CLI::App& program, int& exit_code) {
   CLI::App& app = *program.add_subcommand("pack", "pack rows, logs and hashes into an archive for others");
   add_option(app, "EXPERIMENT", " ", command->experiments,
              "pack only the rows of these experiments [default: all]");
-  add_option(app, "-o,--output", "FILE", command->output, "the archive, .tar.gz")->required();
-  add_option(app, "--submitter", "TEXT", command->submitter, "your name, and your institution")->required();
+  add_option(app, "-o,--output", "FILE", command->output, "the archive, .tar.gz [required]")->required();
+  add_option(app, "--submitter", "TEXT", command->submitter, "your name, and your institution [required]")
+      ->required();
   add_option(
       app, "--division", "closed|open", command->division,
       "closed: inputs and bounds of the experiments; open: anything that you declare [default: closed]");
@@ -209,7 +210,8 @@ void add_check(CLI::App& program, int& exit_code) {
   add_option(app, "ARCHIVE", " ", command->archive, "an archive of podm-bench pack")->required();
   add_option(app, "--sample", "N", command->num_meshes,
              fmt::format("meshes to make again on this machine [default: {}]", command->num_meshes));
-  add_option(app, "--sample-seed", "N", command->seed, "draws these meshes [default: at random]");
+  add_option(app, "--sample-seed", "N", command->seed,
+             "seed of the choice of these meshes [default: at random]");
   add_option(app, "--image", "FILE|FOLDER", command->images,
              "a label image, or a folder of them, that rows may have read; repeatable [default: none]")
       ->allow_extra_args(false);

@@ -64,7 +64,7 @@ export class Labels {
     };
   }
 
-  // What slices.js paints.
+  // Returns a line per label for slices.js: colour, name, and whether it is shown.
   paints() {
     const colours = new Map(this.groups().flatMap(({ lines }) => lines.map((line) => [line, lines[0].label.colour])));
     return this.lines.map((line) => ({ index: line.index, colour: colours.get(line) ?? line.label.colour,
