@@ -11,8 +11,7 @@
 
 namespace podm::bench {
 
-/// A row is what its key says: the key follows from mesher, input, options, machine, repeat. No key occurs
-/// twice.
+/// The key of each row follows from its mesher, input, options, machine and repeat. No key occurs twice.
 void check_keys(const Submission& submission, Faults& faults);
 
 /// Clean programs with their hashes made each row, podm-verify judged each mesh, and the status follows from
@@ -30,7 +29,7 @@ void check_machines(const Submission& submission, Faults& faults);
 /// the cells of all labels, and six dihedral angles per cell.
 void check_clock(const Submission& submission, Faults& faults);
 
-/// Each row with a mesh has the mesher's record and the verifier's report, and says what they say.
+/// Each row with a mesh has the mesher's record and the verifier's report, and agrees with both.
 void check_logs(const Submission& submission, Faults& faults);
 
 /// Closed: each row has the input and the bounds of a trial of `experiments`; a row of podm also has its

@@ -42,7 +42,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         return False
 
     def _is_of_this_machine(self):
-        """Returns false if a foreign name was made to lead here, or if another site's page asks."""
+        """Returns false if the request names another host (DNS rebinding), or comes from a page of another site."""
         hosts = self.headers.get_all("Host") or []
         return (len(hosts) == 1 and hosts[0] in self.server.hosts
                 and all(origin == f"http://{hosts[0]}" for origin in self.headers.get_all("Origin") or []))

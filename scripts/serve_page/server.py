@@ -108,7 +108,7 @@ class Server(http.server.ThreadingHTTPServer):
 
 
 def main(arguments):
-    """Returns the exit code: 0 if a signal ended the server, 2 for a port that cannot be had."""
+    """Returns the exit code: 0 if a signal ended the server, 2 if the port is not available."""
     request = json.loads(arguments[0])
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _end)
