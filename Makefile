@@ -33,7 +33,7 @@ help:
 	@echo "make build         the programs, in build/bin/"
 	@echo "make python        the Python package podm, in build/python/"
 	@echo "make install       the programs, their scripts and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: under it)"
-	@echo "make wheel         dist/podmark-*.whl, which pip installs on any Linux with glibc: programs and Python package"
+	@echo "make wheel         dist/podmark-*.whl, which pip installs on Linux with glibc 2.31 or later: programs and package"
 	@echo "make sdist         dist/podmark-*.tar.gz, the sources, which pip builds where \`make python\` works"
 	@echo "make deb           dist/*.deb, packages of Debian 12: podmark, podmark-mpi, podmark-dev, python3-podm"
 	@echo "make peers         the other programs that \`make experiments\` uses: TetGen, Gmsh and likwid as packages, and"
