@@ -178,6 +178,7 @@ class Uploads(ServeTestCase):
                 ("a.mhd", meta.replace("= LOCAL", f"= {voxels}")), ("a.mha", meta.replace("= LOCAL", f"= {voxels}")),
                 ("a.mhd", meta.replace("= LOCAL", "= ../../secret.raw")),
                 ("a.mhd", meta.replace("= LOCAL", "= other.raw")),
+                ("a.mha", meta.replace("ElementDataFile = LOCAL", f"\nElementDataFile = {voxels}")),
                 ("a.mhd", meta.replace("Element", f"elementdatafile = LOCAL\nElementDataFile = {voxels}\nElement")),
                 ("a.nhdr", f"{nrrd}data file: {voxels}\n"), ("a.nrrd", f"{nrrd}datafile: {voxels}\n\n")):
             with self.subTest(header=header):

@@ -9,7 +9,8 @@ TABLES = (".txt", ".label", ".lut")
 LONGEST_NAME = 120
 LONGEST_HEADER = 1 << 20
 PART = 1 << 20
-WITH_TEXT_HEADER = (".nrrd", ".nhdr", ".mha", ".mhd")
+NRRD = (".nrrd", ".nhdr")
+WITH_TEXT_HEADER = (*NRRD, ".mha", ".mhd")
 NAMES_A_FILE = re.compile(rb"\s*(data ?file|elementdatafile)\s*[:=]+(.*)", re.IGNORECASE)
 
 
@@ -64,9 +65,9 @@ def check_header(path):
 
 
 def _header_lines(path):
-    """Yields the lines of a text header, up to an empty one."""
+    """Yields the lines of a text header. An empty line ends the header of NRRD alone; MetaImage skips it."""
     with open(path, "rb") as file:
         for line in file.read(LONGEST_HEADER).split(b"\n"):
-            if line in (b"", b"\r"):
+            if line in (b"", b"\r") and path.name.endswith(NRRD):
                 return
             yield line
