@@ -317,6 +317,15 @@ class Jobs(ServeTestCase):
         self.assertIn("--label-names names.txt", page.json("POST", "lines", BALL)["command"])
         self.assertEqual(page.mesh(BALL)["stage"], "done")
 
+    def test_colours_of_the_table_are_those_of_slices_and_mesh(self):
+        (self.folder / "lut.txt").write_text("2 middle 1 2 3 0\n")
+        page = self.page()
+        colours = [label["colour"] for label in page.open(self.image, self.folder / "lut.txt")["labels"]]
+        self.assertEqual(colours[1], "#010203")
+        self.assertEqual(len({"#010203", *colours}), 3)
+        page.mesh(COARSE)
+        self.assertEqual([label["colour"] for label in page.json("GET", "mesh")["labels"]], colours)
+
     def test_one_job_at_a_time_and_a_stopped_one_leaves_a_valid_mesh_or_none(self):
         page, other = self.page(), self.page()
         page.open(self.image)

@@ -28,9 +28,10 @@ def load_vtk_meanwhile():
 
 
 def colours_of_image(labels):
-    """Returns a colour per label value, by rank of volume: those of pages and pictures."""
+    """Returns a colour per label value: the label's own, otherwise one by rank of volume, as in pages and pictures."""
     ranked = sorted(labels, key=lambda label: -label["voxels"])
-    return colours_by_rank([label["value"] for label in ranked])
+    own = {label["value"]: label["colour"] for label in labels if label["colour"]}
+    return colours_by_rank([label["value"] for label in ranked]) | own
 
 
 def make_showable(path, values):
