@@ -10,7 +10,9 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
+import types
 import unittest
 import zipfile
 
@@ -22,6 +24,8 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 
 from serve_page.child import Child, Limits as LimitsOfChild  # noqa: E402
+from serve_page.faults import Fault  # noqa: E402
+from serve_page.workspace import Workspace  # noqa: E402
 
 VTK = pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")
 SECONDS_UNSEEN = 8  # of serve_page/server.py, and some more
@@ -361,6 +365,39 @@ class Jobs(ServeTestCase):
 def children_of(process):
     path = pathlib.Path(f"/proc/{process}/task/{process}/children")
     return path.read_text().split() if path.exists() else []
+
+
+class Conversions(PodmTestCase):
+    def setUp(self):
+        super().setUp()
+        self.program = self.folder / "sleeps"
+        self.program.write_text("#!/bin/sh\ntouch started\nexec sleep 60\n")
+        self.program.chmod(0o700)
+        tools = types.SimpleNamespace(podm=self.program, declared=types.SimpleNamespace(extensions=[".msh"]),
+                                      limits=LimitsOfChild(1 << 40, 60), converting=threading.Lock())
+        (self.folder / "page").mkdir()
+        self.workspace = Workspace(tools, self.folder / "page")
+        self.workspace.image = "a.nii"
+        self.mesh = self.folder / "page" / "made" / "a.vtu"
+        self.mesh.touch()
+
+    def test_a_conversion_stands_in_the_way_of_no_run_and_ends_with_its_page(self):
+        faults = []
+
+        def download():
+            try:
+                self.workspace.download(".msh")
+            except Fault as fault:
+                faults.append(fault.status)
+
+        thread = threading.Thread(target=download)
+        thread.start()
+        self.assertTrue(wait_until(lambda: list(self.folder.rglob("started"))))
+        self.assertEqual(list(self.mesh.parent.iterdir()), [self.mesh])  # a run removes what is here
+        self.workspace.close()
+        thread.join(10)
+        self.assertEqual((thread.is_alive(), faults), (False, [500]))
+        self.assertFalse((self.folder / "page").exists())
 
 
 class Limits(ServeTestCase):

@@ -4,17 +4,17 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from .child import Child
 from .faults import Fault
 
 
-def made_in(extension, mesh, tools, folder):
-    """Returns (name, path). The caller removes the file. `mesh`: a .vtu file with its facets beside it."""
-    if extension not in tools.declared.extensions:
+def made_in(extension, mesh, declared, folder, convert):
+    """Returns (name, path). The caller removes the file. `mesh`: a .vtu file with its facets beside it. `convert` runs
+    podm convert on it in a folder."""
+    if extension not in declared.extensions:
         raise Fault(f"{extension}: podm writes no such format.", 404)
     work = Path(tempfile.mkdtemp(dir=folder))
     try:
-        files = _files(extension, mesh, tools, work)
+        files = _files(extension, mesh, work, convert)
         if len(files) == 1:
             return files[0].name, _moved(files[0], folder)
         name = f"{mesh.stem}{extension}.zip"
@@ -26,11 +26,11 @@ def made_in(extension, mesh, tools, folder):
         shutil.rmtree(work, ignore_errors=True)
 
 
-def _files(extension, mesh, tools, work):
+def _files(extension, mesh, work, convert):
     """Returns the files of the format: those that exist, or new ones."""
     if extension == mesh.suffix:
         return sorted(path for path in mesh.parent.glob("*.vtu"))
-    ended = Child([tools.podm, "convert", mesh, work / f"{mesh.stem}{extension}"], work, tools.limits).wait()
+    ended = convert(work / f"{mesh.stem}{extension}", work)
     if ended.exit_code != 0:
         raise Fault(f"{extension}: {ended.broken or ended.errors.strip()}", 500)
     return sorted(work.iterdir())

@@ -33,7 +33,7 @@ class Workspace:
         self._images, self._made = folder / "images", folder / "made"
         self._changed = threading.Condition()
         self._state, self._version = NOTHING, 0
-        self._child = self._querying = self._latest = None
+        self._child = self._converter = self._querying = self._latest = None
         self._is_closed = False
         self._clear()
 
@@ -44,11 +44,13 @@ class Workspace:
             folder.mkdir(mode=0o700)
 
     def close(self):
-        """Ends the program that runs, and removes everything."""
+        """Ends the programs that run, and removes everything."""
         with self._changed:
             self._is_closed = True
             self._changed.notify_all()
         self._kill()
+        if converter := self._converter:
+            converter.kill()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     @property
@@ -246,7 +248,14 @@ class Workspace:
         if not (self.image and self._mesh_path.exists()):
             raise Fault("There is no mesh yet.", 409)
         with self.tools.converting:
-            return made_in(extension, self._mesh_path, self.tools, self._made)
+            return made_in(extension, self._mesh_path, self.tools.declared, self._folder, self._convert)
+
+    def _convert(self, path, folder):
+        """Runs podm convert, also while another program makes a mesh."""
+        self._converter = Child([self.tools.podm, "convert", self._mesh_path, path], folder, self.tools.limits)
+        if self._is_closed:  # close() came between
+            self._converter.kill()
+        return self._converter.wait()
 
     def _refuse_if_busy(self):
         if self._state["stage"] in ("meshing", "verifying"):
