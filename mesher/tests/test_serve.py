@@ -367,37 +367,50 @@ def children_of(process):
     return path.read_text().split() if path.exists() else []
 
 
-class Conversions(PodmTestCase):
+class SleepingPrograms(PodmTestCase):
     def setUp(self):
         super().setUp()
         self.program = self.folder / "sleeps"
         self.program.write_text("#!/bin/sh\ntouch started\nexec sleep 60\n")
         self.program.chmod(0o700)
         tools = types.SimpleNamespace(podm=self.program, declared=types.SimpleNamespace(extensions=[".msh"]),
-                                      limits=LimitsOfChild(1 << 40, 60), converting=threading.Lock())
+                                      limits=LimitsOfChild(1 << 40, 60), converting=threading.Lock(),
+                                      slot=threading.Lock())
         (self.folder / "page").mkdir()
         self.workspace = Workspace(tools, self.folder / "page")
         self.workspace.image = "a.nii"
         self.mesh = self.folder / "page" / "made" / "a.vtu"
         self.mesh.touch()
 
-    def test_a_conversion_stands_in_the_way_of_no_run_and_ends_with_its_page(self):
-        faults = []
+    def begin(self, action):
+        """Returns a thread in which the action has started the program, and the list that gets its answer."""
+        answers = []
 
-        def download():
+        def act():
             try:
-                self.workspace.download(".msh")
+                answers.append(action())
             except Fault as fault:
-                faults.append(fault.status)
+                answers.append(fault.status)
 
-        thread = threading.Thread(target=download)
+        thread = threading.Thread(target=act)
         thread.start()
         self.assertTrue(wait_until(lambda: list(self.folder.rglob("started"))))
+        return thread, answers
+
+    def test_a_conversion_stands_in_the_way_of_no_run_and_ends_with_its_page(self):
+        thread, answers = self.begin(lambda: self.workspace.download(".msh"))
         self.assertEqual(list(self.mesh.parent.iterdir()), [self.mesh])  # a run removes what is here
         self.workspace.close()
         thread.join(10)
-        self.assertEqual((thread.is_alive(), faults), (False, [500]))
+        self.assertEqual((thread.is_alive(), answers), (False, [500]))
         self.assertFalse((self.folder / "page").exists())
+
+    def test_a_new_image_ends_a_prediction_without_a_fault(self):
+        settings_of_none = types.SimpleNamespace(of_labels=list, of_cells=list)
+        thread, answers = self.begin(lambda: self.workspace.predict(settings_of_none))
+        self.workspace.begin()
+        thread.join(10)
+        self.assertEqual((thread.is_alive(), answers), (False, [None]))
 
 
 class Limits(ServeTestCase):

@@ -71,6 +71,7 @@ class Workspace:
     def begin(self):
         """Forgets the image and the mesh before files of another one come."""
         self._refuse_if_busy()
+        self._latest = None  # replaces a query that runs
         self._kill()
         self._clear()
         self._show(**NOTHING)
