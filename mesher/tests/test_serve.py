@@ -412,6 +412,13 @@ class SleepingPrograms(PodmTestCase):
         thread.join(10)
         self.assertEqual((thread.is_alive(), answers), (False, [None]))
 
+    def test_the_page_says_why_no_claim_is_decided(self):
+        self.program.write_text("#!/bin/sh\necho 'podm-verify: a.vtu: no such file' >&2\nexit 2\n")
+        self.workspace.tools.verifier = self.program
+        self.workspace._verify(types.SimpleNamespace(of_labels=list), {"verify": {"claims": ["labels"], "options": []}})
+        state, _ = self.workspace.wait_for_change(None, 0)
+        self.assertEqual(state["undecided"], "podm-verify: a.vtu: no such file")
+
 
 class Limits(ServeTestCase):
     OPTIONS = ["--max-seconds", "2", "--max-memory-gib", "2"]

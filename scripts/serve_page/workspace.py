@@ -227,7 +227,7 @@ class Workspace:
         report = json.loads(ended.output) if ended.exit_code in (0, 1) else None
         claims = [{"name": name.replace("_", " "), "verdict": claim["verdict"], "reason": claim["reason"]}
                   for name, claim in report["claims"].items()] if report else []
-        why_none = "" if claims else ended.broken or "podm-verify was stopped"
+        why_none = "" if claims else ended.broken or _last_line(ended.errors) or "podm-verify was stopped"
         self._show(stage="done", mesh=mesh, claims=claims, undecided=why_none)
 
     @property
@@ -267,6 +267,10 @@ def _complaint(ended):
     """Returns the sentence with which podm ended."""
     lines = _lines(ended.errors, "podm: ")
     return lines[0] if lines else f"podm ended with code {ended.exit_code} and no message."
+
+
+def _last_line(text):
+    return text.strip().rpartition("\n")[2].removesuffix(".")
 
 
 def _lines(text, start):
