@@ -65,10 +65,10 @@ async function take(files) {
     throw new Error(`${(all / 2 ** 20).toFixed(1)} MiB are more than the ${(options.most_bytes / 2 ** 20).toFixed(1)} MiB `
       + "that this server takes (--max-upload-mib).");
   }
+  await post("begin");  // refused while a mesh is made: its Stop button stays
   one("settings").hidden = one("slices").hidden = true;
   status.textContent = "The image is read …";
   try {
-    await post("begin");
     for (const file of files) await put(file);
     const info = await post("open");
     labels.show(info.labels, info.shown);
