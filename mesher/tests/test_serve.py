@@ -322,9 +322,9 @@ class Jobs(ServeTestCase):
         self.assertEqual(page.mesh(BALL)["stage"], "done")
 
     def test_colours_of_the_table_are_those_of_slices_and_mesh(self):
-        (self.folder / "lut.txt").write_text("2 middle 1 2 3 0\n")
+        (self.folder / "lut.ctbl").write_text("# Color table file\n2 middle 1 2 3 255\n")
         page = self.page()
-        colours = [label["colour"] for label in page.open(self.image, self.folder / "lut.txt")["labels"]]
+        colours = [label["colour"] for label in page.open(self.image, self.folder / "lut.ctbl")["labels"]]
         self.assertEqual(colours[1], "#010203")
         self.assertEqual(len({"#010203", *colours}), 3)
         page.mesh(COARSE)

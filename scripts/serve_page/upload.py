@@ -5,7 +5,7 @@ from .faults import Fault
 
 IMAGES = (".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".inr", ".inr.gz")
 BESIDE = (".raw", ".zraw", ".raw.gz", ".gz")  # voxels beside a header of .nhdr or .mhd
-TABLES = (".txt", ".label", ".lut")
+TABLES = (".txt", ".label", ".lut", ".ctbl")
 LONGEST_NAME = 120
 LONGEST_HEADER = 1 << 20
 PART = 1 << 20
