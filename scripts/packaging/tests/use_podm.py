@@ -15,6 +15,7 @@ READ_BY_VERIFIER = set(ENDINGS) - {".xdmf"}
 NRRD = ("NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 16 16 16\n"
         "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: raw\n"
         "space origin: (0,0,0)\n\n")
+SEGMENTS = "Segment0_Name:=cube\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Color:=1 0 0\n\n"
 EXPERIMENT = """
 title = "Small"
 claim = "A phantom is meshed."
@@ -55,10 +56,12 @@ class Installation(unittest.TestCase):
     def test_images_of_each_reader_are_meshed_and_proved(self):
         self.run_program("podm", "phantom", "spheres", "--size", "16", "-o", "a.nii.gz")
         (self.folder / "a.nrrd").write_bytes(NRRD.encode() + cube())
+        (self.folder / "a.seg.nrrd").write_bytes(NRRD[:-1].encode() + SEGMENTS.encode() + cube())
         (self.folder / "a.raw").write_bytes(cube())
         (self.folder / "a.mhd").write_text("NDims = 3\nDimSize = 16 16 16\nElementType = MET_UCHAR\n"
                                            "ElementSpacing = 1 1 1\nElementDataFile = a.raw\n")
-        for image in ("a.nii.gz", "a.nrrd", "a.mhd"):
+        self.assertRegex(self.run_program("podm", "info", "a.seg.nrrd").stdout, "#ff0000 +cube")
+        for image in ("a.nii.gz", "a.nrrd", "a.seg.nrrd", "a.mhd"):
             self.run_program("podm", "info", image)
             self.run_program("podm", "mesh", image, "--radius", "5", "--threads", "2", "--verify", "--quiet", "-o",
                              "a.vtu")
@@ -79,7 +82,8 @@ class Installation(unittest.TestCase):
         self.run_program("podm", "mesh", "phantom:spheres@16", "--radius", "5", "--quiet", "-o", "a.vtu")
         before = set(self.folder.iterdir())
         for words in (["view", "a.vtu", "-o", "a.png"],
-                      ["mesh", "phantom:spheres@16", "--radius", "5", "-o", "b.vtu", "--report", "b.html"]):
+                      ["mesh", "phantom:spheres@16", "--radius", "5", "-o", "b.vtu", "--report", "b.html"],
+                      ["serve", "--no-browser"]):
             message = self.run_program("podm", *words, exit_code=2).stderr.strip()
             self.assertEqual(message.count("\n"), 0, message)
             self.assertIn("vtk", message)
