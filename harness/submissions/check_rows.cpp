@@ -55,7 +55,10 @@ std::string repeated_part(const Row& row) {
   return Json({mesher_of(row), row.input.sha256.value_or(""), options, to_json(row.resolved)}).dump();
 }
 
-bool is_promised(const MeshRecord& mesh, const std::string& claim) {
+// podm promises what it has podm-verify judge; another mesher may name the claims that it promises.
+bool is_promised(const Row& row, const std::string& claim) {
+  const MeshRecord& mesh = *row.mesh;
+  if (mesh.verify && !row.programs.peer && std::ranges::count(mesh.verify->claims, claim) > 0) return true;
   return !mesh.promises || std::ranges::count(*mesh.promises, claim) > 0;
 }
 
@@ -65,7 +68,7 @@ std::string fault_of_mesh(const Row& row) {
     if (misses != 0) return fmt::format("{} misses of {}", misses, guarantee);
   if (!mesh.verdicts || mesh.verdicts->empty()) return "no verdict of podm-verify";
   for (const auto& [claim, verdict] : *mesh.verdicts)
-    if (verdict != Proof::kPass && is_promised(mesh, claim))
+    if (verdict != Proof::kPass && is_promised(row, claim))
       return fmt::format("{}: {}", claim, to_string(verdict));
   if (row.replay && row.replay->end != Replay::End::kEqual) return "replay " + row.replay->text();
   return mesh.stop_reason == kComplete ? "" : "stopped: " + mesh.stop_reason;

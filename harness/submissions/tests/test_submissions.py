@@ -258,6 +258,13 @@ class Submissions(unittest.TestCase):
         files = self.edited(lambda row: row["verdicts"].update(delaunay="fail"))
         self.assert_fault(self.check(files), "delaunay is fail, in its log pass", "ok in spite of delaunay: fail")
 
+    def test_a_row_of_podm_promises_what_it_is_judged_by(self):
+        def promise_nothing(row):
+            row["promises"] = []
+            row["verdicts"]["delaunay"] = "fail"
+
+        self.assert_fault(self.check(self.edited(promise_nothing)), "ok in spite of delaunay: fail")
+
     def test_dirty_programs_are_refused(self):
         for program in ("podm", "podm_verify"):
             def soil(row):
