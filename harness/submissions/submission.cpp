@@ -30,9 +30,13 @@ std::optional<std::string> text_of_file(const std::string& path) {
   return text.str();
 }
 
+std::string name_of_topology(const Row& row) {
+  return fmt::format("{}{}.xml", kTopology, row.environment.topology_sha256);
+}
+
 void add_topology(const std::string& results_folder, const Row& row, PackedFiles& files) {
   if (row.environment.topology_sha256.starts_with(Unavailable::kPrefix)) return;
-  const std::string name = fmt::format("{}{}.xml", kTopology, row.environment.topology_sha256);
+  const std::string name = name_of_topology(row);
   if (files.contains(name)) return;
   const auto text = text_of_file(fmt::format("{}/{}", results_folder, name));
   if (!text) throw InputError(fmt::format("{}/{}: no such file; rows name it", results_folder, name));
@@ -127,16 +131,18 @@ Submission read_submission(const PackedFiles& files, const std::string& path, Fa
   for (const auto& [name, text] : files)
     if (name.starts_with(kRows)) read_rows_of(name, text, submission, faults);
   std::set<std::string> known{kManifestName};
-  for (SubmittedRow& each : submission.rows)
+  for (SubmittedRow& each : submission.rows) {
+    known.insert(name_of_topology(each.row));
     for (const char* log : kLogNames) {
       const auto found = files.find(fmt::format("{}{}{}", kLogs, each.row.key, log));
       if (found == files.end()) continue;
       each.logs[log] = found->second;
       known.insert(found->first);
     }
+  }
   for (const auto& [name, text] : files) {
     if (name.starts_with(kTopology)) submission.topologies.push_back(sha256_of(text));
-    if (!name.starts_with(kRows) && !name.starts_with(kTopology) && !known.contains(name))
+    if (!name.starts_with(kRows) && !known.contains(name))
       faults.push_back({"files", fmt::format("{}: no row needs it", name)});
   }
   return submission;

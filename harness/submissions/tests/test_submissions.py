@@ -307,6 +307,8 @@ class Submissions(unittest.TestCase):
         files = {**self.files, "rows/exp.jsonl": self.files["rows/exp.jsonl"] + b"\n"}
         self.assert_fault(self.check(files), "files: rows/exp.jsonl: its hash is not that of the manifest")
         self.assert_fault(self.check({**self.files, "more.txt": b"more"}), "the manifest does not list it")
+        for name in "more.txt", "topology-more.xml":
+            self.assert_fault(self.check(with_new_hashes({**self.files, name: b"more"})), f"{name}: no row needs it")
 
     def test_closed_rows_have_inputs_and_options_of_the_suite(self):
         for edit, trial in ((lambda row: row["asked"].update(seed=7), "one"),
