@@ -135,6 +135,8 @@ std::vector<Label> read_label_table(const std::string& path) {
   std::vector<Label> labels;
   std::string text;
   for (std::size_t number = 1; std::getline(file, text); ++number) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // editors of Windows begin files with it
+    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     const auto refuse = [&](const std::string& fault) {
       throw InputError(path + ":" + std::to_string(number) + ": " + fault);
     };

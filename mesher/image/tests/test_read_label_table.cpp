@@ -76,6 +76,14 @@ TEST_F(LabelTable, ValueAndNameLines) {
   expect_label(labels[2], 3, "left lobe", std::nullopt);
 }
 
+TEST_F(LabelTable, AByteOrderMarkIsSkipped) {
+  const auto labels = read(
+      "\xef\xbb\xbf"
+      "1 liver\r\n2 spleen\r\n");
+  ASSERT_EQ(labels.size(), 2u);
+  expect_label(labels[0], 1, "liver", std::nullopt);
+}
+
 TEST_F(LabelTable, FaultsNameTheLine) {
   for (const char* line : {"Precentral_L 1", "-1 name", "4294967296 name", "1", "2x name", "1 \"\""})
     expect_refused(std::string("7 fine\n") + line + "\n", ":2", "");
