@@ -25,6 +25,7 @@ sys.path.insert(0, str(SCRIPTS))
 
 from serve_page.child import Child, Limits as LimitsOfChild  # noqa: E402
 from serve_page.faults import Fault  # noqa: E402
+from serve_page.picture import MOST_CELLS, mesh_parts  # noqa: E402
 from serve_page.workspace import Workspace  # noqa: E402
 
 VTK = pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")
@@ -436,6 +437,9 @@ class Limits(ServeTestCase):
         page.json("POST", "run", settings(radius=0.3))
         state = page.wait_for("stopped")
         self.assertRegex(state["fault"], "need about .* GiB of memory; the limit is")
+
+    def test_a_mesh_that_the_page_does_not_turn_is_not_read(self):
+        self.assertIsNone(mesh_parts(self.folder / "missing.vtu", MOST_CELLS + 1, {}))
 
     def test_a_program_that_takes_too_much_is_ended(self):
         for code, limits, words in (

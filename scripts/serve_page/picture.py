@@ -52,8 +52,10 @@ def make_showable(path, values):
     return list(range(1, len(values) + 1))
 
 
-def mesh_parts(path, colours):
-    """Returns the description and the bytes for viewer.js; None if it has more cells than the page turns."""
+def mesh_parts(path, num_cells, colours):
+    """Returns the description and the bytes for viewer.js; None, without reading, if the page turns no mesh of so many
+    cells."""
+    if num_cells > MOST_CELLS:
+        return None
     load_vtk()
-    mesh = read_mesh(path)
-    return None if len(mesh.cells) > MOST_CELLS else parts_of(mesh, colours)
+    return parts_of(read_mesh(path), colours)

@@ -208,7 +208,7 @@ class Workspace:
                        "" if ended.exit_code < 0 else _complaint(ended))
             return None
         record = json.loads(self._record.read_text())
-        self.parts = mesh_parts(self._mesh_path, self.colours)
+        self.parts = mesh_parts(self._mesh_path, record["cells"], self.colours)
         mesh = {"cells": record["cells"], "vertices": record["vertices"], "turns": self.parts is not None,
                 "seconds": sum(record["phases_s"].values()), "sha256": record["mesh_sha256"],
                 "unmet": _lines(ended.errors, "podm: "), "warnings": _lines(ended.errors, "warning: ")}
