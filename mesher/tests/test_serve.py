@@ -156,7 +156,7 @@ class Uploads(ServeTestCase):
         self.assertEqual(status, 413)
         self.assertIn("2.0 MiB are more than the 1.0 MiB", sentence)
         head = f"PUT /{self.server.token}/pages/{self.sent.name}/file/a.nii HTTP/1.1\r\nHost: {self.server.host}\r\n"
-        for length, status in ((1 << 60, 413), ("-1", 411), ("x", 411)):
+        for length, status in ((1 << 60, 413), ("9" * 5000, 411), ("-1", 411), ("x", 411)):
             answer = self.server.raw(f"{head}Content-Length: {length}\r\n\r\n".encode())
             self.assertIn(f" {status} ".encode(), answer.split(b"\r\n")[0])
         chunked = self.server.raw(f"{head}Transfer-Encoding: chunked\r\n\r\n1\r\nx\r\n".encode())
@@ -210,7 +210,8 @@ class Uploads(ServeTestCase):
                      json.dumps(settings(keep=[-1])), json.dumps(settings(merges=[("", [1])])),
                      json.dumps(settings(merges=[("a\nb", [1])])), json.dumps(settings(radius="--log=x")),
                      json.dumps(settings(radius=-1)), json.dumps(settings(radius=float("nan"))),
-                     json.dumps(settings(min_dihedral=90)), "x" * (2 << 20)):
+                     json.dumps(settings(min_dihedral=90)), json.dumps(settings(radius=10**400)),
+                     "[" * 100_000, "x" * (2 << 20)):
             with self.subTest(sent=sent[:80]):
                 self.assertIn(self.sent.fault("POST", "run", sent.encode())[0], (400, 413))
 

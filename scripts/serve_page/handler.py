@@ -12,6 +12,7 @@ from .faults import Fault
 from .static import FILES, POLICY, START, TYPES
 
 LONGEST_JSON = 1 << 20
+MOST_DIGITS = 30  # of a length
 PERIOD_S = 1  # between two looks whether a page is still open
 MOST_IGNORED_BYTES = 1 << 26  # of a refused upload; the browser shows the refusal only after it has sent enough
 JSON, BYTES = "application/json", "application/octet-stream"
@@ -99,7 +100,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
     def _settings(self, page):
         try:
             sent = json.loads(self._body)
-        except ValueError:
+        except (ValueError, RecursionError):
             raise Fault("The settings are not those of this page.") from None
         return page.settings(sent)
 
@@ -110,7 +111,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
     def _length(self, most):
         length = self.headers.get("Content-Length", "")
-        if not length.isdecimal():
+        if not length.isdecimal() or len(length) > MOST_DIGITS:
             self.close_connection = True  # the end of the body is unknown
             raise Fault("The length of the upload is missing.", 411)
         if int(length) > most:

@@ -50,7 +50,7 @@ class Settings:
             merges = tuple((_name(one["name"]), tuple(map(_value, one["values"]))) for one in sent["merges"])
             numbers = {name: _number(name, sent["numbers"][name], declared[name])
                        for name in (*SLIDERS, OF_LABELS) if sent["numbers"].get(name) is not None}
-        except (KeyError, TypeError, ValueError, AttributeError):
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
             raise Fault("The settings are not those of this page.") from None
         if keep == ():
             raise Fault("No label is ticked.")
