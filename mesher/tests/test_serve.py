@@ -14,6 +14,7 @@ import threading
 import time
 import types
 import unittest
+import unittest.mock
 import zipfile
 
 from podm_process import PROGRAM, PodmTestCase, run_podm
@@ -26,6 +27,7 @@ sys.path.insert(0, str(SCRIPTS))
 from serve_page.child import Child, Limits as LimitsOfChild  # noqa: E402
 from serve_page.faults import Fault  # noqa: E402
 from serve_page.picture import MOST_CELLS, mesh_parts  # noqa: E402
+from serve_page.scratch import Scratch  # noqa: E402
 from serve_page.workspace import Workspace  # noqa: E402
 
 VTK = pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")
@@ -483,6 +485,15 @@ class Ending(ServeTestCase):
         self.assertTrue((self.temporary / "podm-serve-other").exists())
         self.assertEqual(running.ask("GET", f"/{running.token}/").status, 200)
         self.assertEqual(len(list(self.temporary.glob("podm-serve-*/lock"))), 2)
+
+    def test_a_folder_that_another_server_removes_before_it_is_locked_is_replaced(self):
+        (self.folder / "new").mkdir()
+        folders = [str(self.folder / name) for name in ("removed", "new")]
+        with unittest.mock.patch("serve_page.scratch.tempfile.mkdtemp", side_effect=folders), \
+                unittest.mock.patch("serve_page.scratch.tempfile.gettempdir", return_value=str(self.folder)):
+            scratch = Scratch()
+        self.assertEqual(scratch.path, self.folder / "new")
+        scratch.close()
 
     def test_only_this_user_may_enter_the_folder(self):
         for path in self.temporary.rglob("*"):

@@ -15,9 +15,18 @@ class Scratch:
 
     def __init__(self):
         _remove_unused(Path(tempfile.gettempdir()))
+        while not self._has_locked_a_new_folder():
+            pass
+
+    def _has_locked_a_new_folder(self):
+        """Returns false if another server that starts has removed the folder before it was locked."""
         self.path = Path(tempfile.mkdtemp(prefix=PREFIX))
-        self._lock = open(self.path / LOCK, "w")
-        fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            self._lock = open(self.path / LOCK, "w")
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except (FileNotFoundError, BlockingIOError):
+            return False
+        return (self.path / LOCK).exists()
 
     def new_folder(self):
         return Path(tempfile.mkdtemp(dir=self.path))
