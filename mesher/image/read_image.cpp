@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "image/foreground.h"
 #include "image/index_voxels.h"
 #include "image/label_selection.h"
 #include "image/merge_layers.h"
@@ -43,17 +44,28 @@ void name_by_segments(LabelImage& image) {
     if (const auto found = labels.find(label.value); found != labels.end()) label = *found->second;
 }
 
+// For a file of one layer, where no segment covers another.
+void count_segments(LabelImage& image, std::size_t threads) {
+  if (image.segments.empty()) return;
+  const std::vector<std::uint64_t> counts = count_voxels(image, static_cast<int>(threads));
+  std::map<std::uint32_t, std::uint64_t> voxels;
+  for (std::size_t i = 0; i < image.labels.size(); ++i) voxels[image.labels[i].value] = counts[i];
+  for (Segment& segment : image.segments) segment.voxels = voxels[segment.label.value];
+}
+
 LabelImage read_file(const std::string& path, const LabelSelection& selection, std::size_t threads,
                      std::uint64_t most_bytes) {
   RawImage raw = read_raw(path, most_bytes);
   if (raw.slope != 1 || raw.intercept != 0)
     refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
   check_layers(path, selection, raw.segments.size(), raw.num_layers);
+  const bool is_one_layer = raw.num_layers == 1;
   merge_layers(raw, selection, threads);
   LabelImage image = index_array(array_of(raw), raw.voxel_to_ras, path, threads);
   image.warnings = std::move(raw.warnings);
   image.segments = std::move(raw.segments);
   name_by_segments(image);
+  if (is_one_layer) count_segments(image, threads);
   return image;
 }
 

@@ -83,6 +83,12 @@ class SegmentationTest(PodmTestCase):
         self.assertIn("numbered in the order of segments: 1 skin, 2 long bone", text.stderr)
         self.assertIn(f"{sum(BONE)} of the {sum(SKIN)} voxels of segment 'skin' (layer 0)", text.stderr)
 
+    def test_segments_of_one_layer_are_counted(self):
+        path = self.folder / "one.seg.nrrd"
+        path.write_bytes(segmentation([SKIN], [("skin", 0, 1, "1 0 0"), ("nothing", 0, 2, "0 1 0")]))
+        self.assertEqual([(of["name"], of["voxels"], of["covered_voxels"]) for of in self.info(path)["segments"]],
+                         [("skin", sum(SKIN), 0), ("nothing", 0, 0)])
+
     def test_the_mesh_is_that_of_a_plain_image_merged_by_hand(self):
         by_hand = self.folder / "plain.nrrd"
         merged = bytes(2 if bone else skin for skin, bone in zip(SKIN, BONE))

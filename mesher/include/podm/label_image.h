@@ -30,7 +30,7 @@ struct Segment {
   Label label;
   std::uint32_t stored_value = 0;  ///< in the voxels of its layer
   std::size_t layer = 0;
-  std::uint64_t voxels = 0;   ///< of the segment; counted only if the file has several layers
+  std::uint64_t voxels = 0;   ///< of the segment, in the layers that are read
   std::uint64_t covered = 0;  ///< those of them that belong to a segment above it in the image
 };
 
