@@ -4,7 +4,7 @@ import subprocess
 
 SYSTEM = "/usr/lib/x86_64-linux-gnu"
 # Debian's archives that are position-independent; the others are in static/.
-OF_DEBIAN = ("libboost_thread.a", "libboost_context.a", "libboost_atomic.a", "libcrypto.a", "libz.a")
+OF_DEBIAN = ("libboost_thread.a", "libboost_context.a", "libboost_atomic.a", "libarchive.a", "libcrypto.a", "libz.a")
 
 
 class Linker:

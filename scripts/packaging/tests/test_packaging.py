@@ -13,7 +13,8 @@ ROOT = PACKAGING.parents[1]
 BUILD = Path(os.environ.get("PODM_BUILD", ROOT / "build"))
 sys.path[:0] = [str(PACKAGING)]
 
-from podm_wheel import binary, wheel  # noqa: E402
+from podm_wheel import binary, linker, wheel  # noqa: E402
+from podm_wheel.__main__ import PROGRAMS  # noqa: E402
 from podm_wheel.build_tree import BuildTree  # noqa: E402
 
 VERSION = re.search(r"^project\(podm VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)[1]
@@ -61,6 +62,14 @@ class Binaries(unittest.TestCase):
         self.assertTrue(any("ITK" in name for name in binary.needed(program)))
         with self.assertRaisesRegex(binary.Unportable, "libITK"):
             binary.check(program)
+
+    def test_each_library_of_the_programs_is_linked_into_the_wheel(self):
+        made = (PACKAGING / "libraries").read_text()
+        needed = set().union(*(binary.needed(BUILD / "bin" / program) for program in PROGRAMS))
+        for name in needed - binary.OF_THE_SYSTEM - {"libstdc++.so.6", "libgcc_s.so.1"}:
+            stem = "insighttoolkit" if "itk" in name.lower() else re.match("lib([a-z]+)", name)[1]
+            is_made = re.search(f"^(enter|archive|download|for library in|unpack) .*{stem}", made, re.MULTILINE)
+            self.assertTrue(is_made or any(one.startswith(f"lib{stem}") for one in linker.OF_DEBIAN), name)
 
     def test_a_path_outside_the_wheel_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
