@@ -67,6 +67,9 @@ std::string fault_of_mesh(const Row& row) {
   for (const auto& [guarantee, misses] : mesh.guarantees)
     if (misses != 0) return fmt::format("{} misses of {}", misses, guarantee);
   if (!mesh.verdicts || mesh.verdicts->empty()) return "no verdict of podm-verify";
+  if (mesh.verify && !row.programs.peer)
+    for (const std::string& claim : mesh.verify->claims)
+      if (mesh.verdicts->find(claim) == nullptr) return "no verdict of podm-verify on " + claim;
   for (const auto& [claim, verdict] : *mesh.verdicts)
     if (verdict != Proof::kPass && is_promised(row, claim))
       return fmt::format("{}: {}", claim, to_string(verdict));

@@ -258,6 +258,15 @@ class Submissions(unittest.TestCase):
         files = self.edited(lambda row: row["verdicts"].update(delaunay="fail"))
         self.assert_fault(self.check(files), "delaunay is fail, in its log pass", "ok in spite of delaunay: fail")
 
+    def test_a_claim_that_is_left_out_of_row_and_log_is_found(self):
+        files = self.edited(lambda row: row["verdicts"].pop("delaunay"))
+        key = next(row["key"] for row in self.rows() if row["trial"] == "one")
+        name = f"logs/{key}/verification.json"
+        report = json.loads(files[name])
+        del report["claims"]["delaunay"]
+        files = with_new_hashes({**files, name: json.dumps(report).encode()})
+        self.assert_fault(self.check(files), "ok in spite of no verdict of podm-verify on delaunay")
+
     def test_a_row_of_podm_promises_what_it_is_judged_by(self):
         def promise_nothing(row):
             row["promises"] = []
