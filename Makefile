@@ -7,6 +7,8 @@ FIGURES = results/runs/figures
 INPUTS = --records results/runs results/submissions --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
   --experiment-verdicts $(FIGURES)/experiment_verdicts.json
+# Each folder has rows of its own.
+CORPUS = results/runs$(if $(FOLDER),/corpus$(subst /,-,$(abspath $(FOLDER))))
 TIER ?= default
 PREFIX ?= /usr/local
 SECONDS ?= 600
@@ -19,7 +21,7 @@ help:
 	@echo "make kick-tires    run every experiment at its smallest size, in a few minutes; tables and results/runs/"
 	@echo "make experiments   run the experiments at laptop size (TIER=full: for the whole machine); a second call"
 	@echo "                   continues where the first stopped"
-	@echo "make test          run all tests"
+	@echo "make test          run the tests; SLOW=1: also those that take too long for every commit"
 	@echo "make stress        random runs with up to 256 workers on random images for SECONDS=600, each verified and"
 	@echo "                   replayed; SEED=N repeats one of them"
 	@echo "make kill-matrix   list every mutant of a mesh and the claim of podm-verify that rejects it"
@@ -88,7 +90,7 @@ test:
 	@scripts/setup build run python test
 	$(CONFIGURE) -DPODM_BUILD_TESTS=ON
 	cmake --build build --target all tests
-	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j4 --output-on-failure
+	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") $(if $(SLOW),PODM_SLOW_TESTS=1) ctest --test-dir build -j4 --output-on-failure
 	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
 # A failing seed is added to the seeds that `make test` repeats.
@@ -137,8 +139,9 @@ figures: build
 # An image without a mesh is a result: podm-bench exits with 1, and the page follows.
 corpus: build
 	@scripts/setup run
-	build/bin/podm-bench run experiments/corpus.toml $(if $(FOLDER),--image "$(FOLDER)") || test $$? = 1
-	scripts/report --records results/runs/corpus.jsonl -o results/runs/corpus.html
+	build/bin/podm-bench run experiments/corpus.toml $(if $(FOLDER),--image "$(FOLDER)" --results "$(CORPUS)") || \
+	  test $$? = 1
+	scripts/report --records "$(CORPUS)/corpus.jsonl" -o results/runs/corpus.html
 
 clean:
 	rm -rf build build-* dist

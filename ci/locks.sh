@@ -8,7 +8,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-locks
-tests="delaunay_tests workers_tests algorithms_tests optimize_tests rounds_tests"
+tests="lock_contract_tests delaunay_tests workers_tests algorithms_tests optimize_tests rounds_tests"
 
 cmake --preset locks -B "$build" -G Ninja
 # shellcheck disable=SC2086  # a list of words

@@ -1,16 +1,17 @@
 #!/bin/sh
 # Usage: ci/race.sh [FOLDER]
 # Builds podm, the tests of memory orders and those of in-process ranks in FOLDER/build-race (default: ./build-race),
-# with the thread sanitizer and with threads that yield in the middle of operations (mesher/delaunay/step.h). Runs the
-# tests. Four threads then mesh phantoms for RACE_SECONDS (120), by podm, pdr, pdr-podm and podm-home in turn. Stops
-# with exit code 1 at the first finding, at a mesh that podm-verify rejects, or at a mesh that differs from the replay
-# of its log. Each mesh is made once more and optimised.
+# with the thread sanitizer, with threads that yield in the middle of operations (mesher/delaunay/step.h) and with the
+# lock contract (mesher/delaunay/lock_contract.h). Runs the tests. Those of the contract require that it finds planted
+# faults of the lock protocol. Four threads then mesh phantoms for RACE_SECONDS (120), by podm, pdr, pdr-podm and
+# podm-home in turn. Stops with exit code 1 at the first finding, at a mesh that podm-verify rejects, or at a mesh that
+# differs from the replay of its log. Each mesh is made once more and optimised.
 #
-# The same programs must also find each planted fault (mesher/delaunay/planted_fault.h); if they do not, they would
-# not detect a broken protocol, and the script exits with 1. The tests of memory orders find each order of the kernel
-# that is planted as relaxed. The meshes find, within two minutes: one lock instead of two or no lock to read a cell;
-# three locks instead of four to replace it, by refinement or by optimisation; a lock that is taken or released with
-# the relaxed order, and such a count of the workers that distribute cells to leaves.
+# Without the contract, the sanitizer must also find each planted fault (mesher/delaunay/planted_fault.h). If it does
+# not, it would not detect a broken protocol, and the script exits with 1. The tests of memory orders find each order
+# of the kernel that is planted as relaxed. The meshes find, within two minutes: one lock instead of two or no lock to
+# read a cell; three locks instead of four to replace it, by refinement or by optimisation; a lock that is taken or
+# released with the relaxed order.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-race
@@ -21,12 +22,14 @@ export TSAN_OPTIONS="halt_on_error=1:exitcode=$finding"
 
 make build  # verification and replay need no sanitizer
 cmake --preset race -B "$build" -G Ninja
-cmake --build "$build" --target podm communication_tests rounds_tests memory_order_tests
+cmake --build "$build" --target podm communication_tests rounds_tests memory_order_tests lock_contract_tests
 cp build/bin/podm-verify "$build/bin/"  # podm looks for it here
 
 "$build/bin/communication_tests" --gtest_brief=1 --gtest_filter="-*/64*:*Hundreds*"  # races also show with few ranks
 # One-thread ranks that compute one at a time cannot race.
 "$build/bin/rounds_tests" --gtest_brief=1 --gtest_filter='*at_once*:*leaves_on_3*:RanksOfOneProcess*'
+
+"$build/bin/lock_contract_tests" --gtest_brief=1
 
 "$build/bin/memory_order_tests" --gtest_brief=1
 for fault in relaxed_lock relaxed_unlock relaxed_peek_point relaxed_place relaxed_peek_cell relaxed_renew; do
@@ -78,6 +81,7 @@ while [ "$(seconds_since "$start")" -lt "$seconds" ]; do
 done
 echo "== $count runs without a finding"
 
+export PODM_NO_LOCK_CONTRACT=1  # the contract would abort first
 for fault in one_lock no_lock three_locks three_in_cavity relaxed_lock relaxed_unlock; do
   export PODM_PLANTED_FAULT=$fault
   start=$(date +%s)

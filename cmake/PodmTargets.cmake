@@ -68,6 +68,7 @@ function(podm_add_test name)
   add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
   add_dependencies(tests ${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags GTest::gtest_main)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # tests are compiled more often than run
   # Most of the time to compile a test goes to headers that the other tests also include.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_BATCH_SIZE 8)
   include(GoogleTest)

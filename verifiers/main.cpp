@@ -202,7 +202,7 @@ void declare_options(CLI::App& app, Command& command) {
   declare_report(app, command);
   app.footer(
       "Exit codes: 0 all claims pass, 1 some fail or could not be decided, 2 bad usage or input, 3 "
-      "internal.");
+      "internal error.");
 }
 
 // Throws if a report would overwrite one of its inputs.

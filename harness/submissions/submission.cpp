@@ -49,6 +49,8 @@ void add_logs(const std::string& results_folder, const Row& row, PackedFiles& fi
       files[fmt::format("{}{}{}", kLogs, row.key, name)] = *text;
 }
 
+std::string name_of_rows(const std::string& experiment) { return fmt::format("{}{}.jsonl", kRows, experiment); }
+
 void read_rows_of(const std::string& name, const std::string& text, Submission& submission, Faults& faults) {
   std::istringstream lines(text);
   std::size_t number = 0;
@@ -62,6 +64,8 @@ void read_rows_of(const std::string& name, const std::string& text, Submission& 
     }
     try {
       submission.rows.push_back({from_json<Row>(json), std::make_shared<const Json>(json), {}});
+      if (const std::string& experiment = submission.rows.back().row.experiment; name != name_of_rows(experiment))
+        faults.push_back({"schema", fmt::format("{}: a row of the experiment '{}'", place, experiment)});
     } catch (const FieldError& fault) {
       faults.push_back({"schema", fmt::format("{}: {}", place, fault.what())});
     }
@@ -112,7 +116,7 @@ PackedFiles submission_files(const std::string& results_folder, const std::vecto
         rows_to_judge(read_rows(fmt::format("{}/{}.jsonl", results_folder, experiment)).rows);
     if (rows.empty())
       throw InputError(fmt::format("{}/{}.jsonl: no row that counts", results_folder, experiment));
-    std::string& lines = files[fmt::format("{}{}.jsonl", kRows, experiment)];
+    std::string& lines = files[name_of_rows(experiment)];
     for (const Row& row : rows) {
       lines += as_line(row);
       add_topology(results_folder, row, files);

@@ -15,7 +15,11 @@ namespace {
 // The attempts of this thread, by fibre, as a fibre may stop in the middle of an attempt; nullptr: no fibre.
 thread_local std::unordered_map<const Fibre*, const AttemptScope*> attempts;
 
+// ci/race.sh sets it where the thread sanitizer alone has to find a planted fault.
+const bool is_off = std::getenv("PODM_NO_LOCK_CONTRACT") != nullptr;
+
 const AttemptScope* attempt_at_hand() {
+  if (is_off) return nullptr;
   const auto found = attempts.find(Fibre::current());
   return found != attempts.end() ? found->second : nullptr;
 }

@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
+from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm, slow
 from small_images import ball_voxels, write_nifti
 
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
@@ -86,6 +86,7 @@ class Meshes(OnRanks):
                 self.assertTrue(all(round["deferred"] == 0 for round in ranks["rounds"][-1:]))
         self.assertLess(max(cells.values()) / min(cells.values()), 1.02)
 
+    @slow
     def test_leaf_by_leaf_in_each_rank(self):
         image = self.folder / "spheres.nii.gz"
         self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
@@ -121,6 +122,7 @@ class Meshes(OnRanks):
                 ours[key].pop("store_cells"), theirs[key].pop("store_cells")
             self.assertEqual(ours[key], theirs[key], key)
 
+    @slow
     def test_as_many_ranks_of_one_thread_make_the_same_mesh(self):
         contents = []
         for _ in range(2):
@@ -128,12 +130,14 @@ class Meshes(OnRanks):
             contents.append([(self.folder / f"out_{i}.vtu").read_bytes() for i in range(3)])
         self.assertEqual(*contents)
 
+    @slow
     def test_a_mesh_of_less_pieces_replaces_one_of_more(self):
         for number in 4, 2:
             self.assert_exit(self.mesh(number, "--radius", 4), 0)
         self.assertNotIn("out_2.vtu", self.names())
         self.assert_verifies(self.out)
 
+    @slow
     def test_xdmf_voxel_space_and_verification(self):
         self.assert_exit(self.mesh(2, "--radius", 4, out=self.folder / "out.xdmf"), 0)
         self.assertLessEqual({"out.xdmf", "out.h5"}, self.names())
@@ -183,6 +187,7 @@ class InProcess(OnRanks):
         self.assertTrue(all(rank["virtual"] is None and rank["peak_rss_bytes"] > 0 for rank in theirs["by_rank"]))
         self.assertTrue(all(rank["peak_rss_bytes"] is None for rank in ours["by_rank"]))
 
+    @slow
     def test_seeds_draw_cuts_and_meshes_verify(self):
         image = self.folder / "spheres.nii.gz"
         self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
@@ -206,6 +211,7 @@ class InProcess(OnRanks):
         self.assert_exit(self.mesh_in_process(4, *options), 0)
         self.assertEqual(self.contents(4), by_mpi)
 
+    @slow
     def test_virtual_clocks_agree_and_see_the_network(self):
         for network in [], ["--network", "1000,0.001"]:
             self.assert_exit(self.mesh_in_process(3, "--radius", 4, *network), 0)
@@ -284,6 +290,7 @@ class Logs(OnRanks):
             self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
             self.assert_replays(self.logs(3))
 
+    @slow
     def test_logs_are_needed_all_and_of_one_run(self):
         for number, radius in (2, 3), (3, 4):
             self.log = self.folder / f"on_{number}.log"
@@ -387,6 +394,7 @@ class EarlyEnds(OnRanks):
         self.assert_ended_early(self.mesh(3, *ENDLESS[1:], "--max-elements", 60000, image=ENDLESS[0]), "element limit")
         self.assertLessEqual(self.last_record()["cells"], 60000)
 
+    @slow
     def test_the_coarse_mesh_is_not_measured_by_one_ranks_share(self):
         self.assert_exit(self.mesh_in_process(64, "--radius", 8, "--max-elements", 60000), 0)
         self.assertLess(self.last_record()["cells"], 60000)
@@ -423,6 +431,7 @@ class EarlyEnds(OnRanks):
             for rank in ranks:
                 self.wait_for_end(rank)
 
+    @slow
     def test_a_signal_to_all_ranks_ends_them_with_a_valid_mesh(self):
         process, ranks = self.start(2)
         for rank in ranks:

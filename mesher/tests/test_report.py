@@ -7,7 +7,7 @@ import shutil
 import sys
 import unittest
 
-from podm_process import PROGRAM, PodmTestCase, run_podm
+from podm_process import PROGRAM, PodmTestCase, run_podm, slow
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path[:0] = [str(SCRIPTS / "tests")]
@@ -51,6 +51,7 @@ class Report(PodmTestCase):
         self.assertIn("No, not all of it.", self.page())
         self.assertRegex(self.page(), "ended early: element limit")
 
+    @slow
     def test_formats_give_the_same_numbers(self):
         tables = []
         for name in ("a.vtu", "a.vtk", "a.inp", "a.xdmf"):
@@ -77,6 +78,7 @@ class Report(PodmTestCase):
     def read_last(self):
         return json.loads((self.folder / "a.jsonl").read_text().splitlines()[-1])
 
+    @slow
     def test_a_mesh_too_large_to_turn_is_cut_by_planes(self):
         self.assert_exit(run_podm("mesh", "phantom:spheres@24", "--radius", "1", "--quiet", "-o", self.folder / "a.vtu",
                                   "--report", self.folder / "a.html"), 0)

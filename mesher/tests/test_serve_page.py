@@ -6,7 +6,7 @@ import time
 import unittest
 import zipfile
 
-from podm_process import run_podm
+from podm_process import run_podm, slow
 from serving import ServeTestCase
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
@@ -113,6 +113,7 @@ class InBrowser(ServeTestCase):
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('[data-labels] label').length"), 1)
         self.assertIn("both", self.text("[data-labels]"))
 
+    @slow
     def test_another_mesh_and_another_image_replace_the_first(self):
         self.go()
         self.drop()
@@ -202,6 +203,7 @@ class InBrowser(ServeTestCase):
         self.assertNotIn("BODY", way)  # no trap, nothing without a name
         self.assertEqual(self.browser.errors, [])
 
+    @slow
     def test_every_control_has_a_name_and_nothing_overflows(self):
         for width, scheme in ((1400, "light"), (1400, "dark"), (400, "light"), (400, "dark")):
             with self.subTest(width=width, scheme=scheme):

@@ -21,7 +21,9 @@ def corpus(frame):
     """One line per image and setting, of its newest row; by image, in the order of the settings."""
     rows = _rows(frame)
     lines = [_line(row) for row in rows.to_dict("records")]
-    table = pandas.DataFrame(lines, columns=COLUMNS).drop_duplicates(["image", "setting"], keep="last")
+    table = pandas.DataFrame(lines, columns=["path", *COLUMNS]).drop_duplicates(["path", "setting"], keep="last")
+    table["image"] = _distinct_names(table)
+    table = table[COLUMNS]
     order = {setting: place for place, setting in enumerate(COLOURS)}
     return table.sort_values(["image", "setting"], ignore_index=True,
                              key=lambda column: column.map(order) if column.name == "setting" else column)
@@ -110,6 +112,12 @@ def _rows(frame):
     return frame[(frame["experiment"] == EXPERIMENT) & (frame["warmup"] != True)]  # noqa: E712
 
 
+def _distinct_names(table):
+    """Returns the name of each line's image, or its path if images of two folders have that name."""
+    paths_of_name = table.groupby("image")["path"].transform("nunique")
+    return table["image"].where(paths_of_name == 1, table["path"])
+
+
 def _line(row):
     outcome, why = _outcome(row)
     verdicts = {name: word for name, word in row.items() if name.startswith("verdicts.") and isinstance(word, str)}
@@ -117,7 +125,8 @@ def _line(row):
     if isinstance(promised, list):
         verdicts = {name: word for name, word in verdicts.items() if name.removeprefix("verdicts.") in promised}
     size, optimized = row.get("input.size"), row.get("optimization.beyond_bounds")
-    return {"image": row["image"], "setting": row["trial"].partition(",")[0], "mesher": row["mesher"],
+    path = row.get("input.path")
+    return {"path": path if isinstance(path, str) else row["image"], "image": row["image"], "setting": row["trial"].partition(",")[0], "mesher": row["mesher"],
             "outcome": outcome, "why": why, "proved": sum(word == "pass" for word in verdicts.values()),
             "promised": len(verdicts), "seconds": row.get("process.wall_s"),
             "memory_mib": row.get("process.peak_rss_bytes", numpy.nan) / 2**20, "cells": row.get("cells", numpy.nan),

@@ -16,6 +16,7 @@ SHOWN = "shown.nii"
 NOTHING = {"stage": "none"}
 SLOT_TRIES, SLOT_PERIOD_S = 10, 0.2
 SECONDS_TO_WRITE = 60  # beyond its limit, for a mesh that reached it
+SECONDS_TO_END = 10  # for a program that was killed
 
 
 class Replaced(Fault):
@@ -33,7 +34,7 @@ class Workspace:
         self._images, self._made = folder / "images", folder / "made"
         self._changed = threading.Condition()
         self._state, self._version = NOTHING, 0
-        self._child = self._converter = self._querying = self._latest = None
+        self._child = self._converter = self._querying = self._latest = self._job = None
         self._is_closed = False
         self._clear()
 
@@ -44,13 +45,15 @@ class Workspace:
             folder.mkdir(mode=0o700)
 
     def close(self):
-        """Ends the programs that run, and removes everything."""
+        """Ends the programs that run, waits for them, and removes everything."""
         with self._changed:
             self._is_closed = True
             self._changed.notify_all()
         self._kill()
         if converter := self._converter:
             converter.kill()
+        if job := self._job:
+            job.join(SECONDS_TO_END)
         shutil.rmtree(self._folder, ignore_errors=True)
 
     @property
@@ -170,7 +173,8 @@ class Workspace:
         self._take_slot()
         self.parts = None
         self._show(stage="meshing", phase="start", fraction=0, cells=0, seconds=0)
-        threading.Thread(target=self._run, args=(settings,), daemon=True).start()
+        self._job = threading.Thread(target=self._run, args=(settings,), daemon=True)
+        self._job.start()
 
     def stop(self):
         """Asks the mesher to end with a valid mesh, or with none if it has none yet; ends the verifier."""

@@ -64,6 +64,13 @@ class Corpus(unittest.TestCase):
     def test_the_newest_row_of_an_image_and_setting_counts(self):
         self.assertEqual(self.line(without_mesh("a.nii", build=1), image_row("a.nii"))["outcome"], corpus.SUCCESS)
 
+    def test_images_of_one_name_in_two_folders_are_two(self):
+        other = without_mesh("a.nii")
+        other["input"]["path"] = "/others/a.nii"
+        table = corpus.corpus(frame_of(other, image_row("a.nii")))
+        self.assertEqual(dict(zip(table["image"], table["outcome"])),
+                         {"/images/a.nii": corpus.SUCCESS, "/others/a.nii": corpus.REFUSED})
+
     def test_other_experiments_and_warm_ups_are_left_out(self):
         self.assertTrue(corpus.corpus(frame_of(synthetic.row(), image_row("a.nii", warmup=True))).empty)
         self.assertTrue(corpus.corpus(pandas.DataFrame()).empty)

@@ -11,6 +11,7 @@ from figures import fit_machine
 from figures.load import RecordError
 from test_figures import frame_of
 from test_programs import call, write_rows
+from slow import slow
 
 COUNTS = (1, 32, 64, 128, 160, 192, 224, 256)
 MACHINE = ("name = 'Synthetic'\n[processor]\nclock_ghz = 2.0\ncore_speed = 0.2\n[memory]\ncycles_per_hop = 1500\n")
@@ -98,6 +99,7 @@ class Program(unittest.TestCase):
         return call("fit_machine", write_rows(self.folder / "rows.jsonl", rows), "--machine", self.machine,
                     "-o", self.folder / "out")
 
+    @slow
     def test_a_fit_is_written_and_says_which_rows_it_lacks(self):
         done = self.fit(rows_of((1, 32, 64, 128, 160)))
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -9,6 +9,7 @@ from pathlib import Path
 import paths
 import synthetic
 from figures import paper, paper_claims
+from slow import slow
 
 
 def call(program, *arguments):
@@ -68,6 +69,7 @@ class Programs(unittest.TestCase):
             self.assertIn("because of <third>", words)
         self.assertIn("1 hold, 1 do not, 0 not resolved, 1 cannot be decided here", done.stdout)
 
+    @slow
     def test_equal_records_give_equal_files(self):
         rows = write_rows(self.folder / "weak.jsonl", synthetic.like_the_paper(paper.table1(), repeats=2))
         for name in "ab":
@@ -171,6 +173,7 @@ class Page(unittest.TestCase):
         self.assertIn("2 cores, equation 1", answers["scales"])
         self.assertNotIn("256", answers["scales"], "simulated cores are none of this machine's")
 
+    @slow
     def test_a_busy_machine_is_stated_before_any_answer_and_over_its_tables(self):
         self.assertNotIn("processors busy", self.text)
         busy = synthetic.ROW["environment"] | {"busy_elsewhere": 0.8}
@@ -181,6 +184,7 @@ class Page(unittest.TestCase):
         self.assertLess(text.index(first), text.index('<section class="answer"'))
         self.assertTrue(others, "tables say it too")
 
+    @slow
     def test_faults_of_others_are_not_counted_for_our_meshes(self):
         works = self.answers()["works"]
         self.assertIn("none refuted; trials: 1 failed", works)
@@ -207,6 +211,7 @@ class Page(unittest.TestCase):
         self.assertIn('simulated <span class="verdict contradicted">', line)
         self.assertIn("simulated: 12 agrees, 1 contradicted, 2 not judged", shown)
 
+    @slow
     def test_verdicts_without_a_claim_that_the_paper_needs_name_it(self):
         rows = write_rows(self.path.parent / "few.jsonl", [synthetic.row()])
         write_rows(self.path.parent / "few.json", [synthetic.experiment_verdicts(good="holds")])
