@@ -303,7 +303,7 @@ class Submissions(unittest.TestCase):
                           "schema: rows/exp.jsonl:", "not a row of schema 4")
         self.assert_fault(self.check(self.edited(lambda row: row.pop("process"))), "has no key 'process'")
         self.assert_fault(self.check(self.edited(lambda row: row.update(experiment="other"))),
-                          "schema: rows/exp.jsonl:1: a row of the experiment 'other'")
+                          "schema: rows/exp.jsonl:", "a row of the experiment 'other'")
         deep = self.files["rows/exp.jsonl"] + b'{"schema": 4, "asked": ' + b"[" * 100000 + b"]" * 100000 + b"}\n"
         self.assert_fault(self.check(with_new_hashes({**self.files, "rows/exp.jsonl": deep})), "not a row of schema 4")
 
