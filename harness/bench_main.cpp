@@ -58,7 +58,8 @@ void add_run(CLI::App& program, int& exit_code) {
       ->allow_extra_args(false);
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
-  app.add_flag("--keep", command.keep, "keep the files of each trial, meshes included [default: its messages alone]");
+  app.add_flag("--keep", command.keep,
+               "keep the files of each trial, meshes included [default: its messages alone]");
   add_option(app, "--order-seed", "N", command.order_seed,
              fmt::format("draws the order within each round [default: {}]", command.order_seed));
   add_option(app, "--results", "FOLDER", command.results_folder,

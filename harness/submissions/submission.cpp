@@ -49,7 +49,9 @@ void add_logs(const std::string& results_folder, const Row& row, PackedFiles& fi
       files[fmt::format("{}{}{}", kLogs, row.key, name)] = *text;
 }
 
-std::string name_of_rows(const std::string& experiment) { return fmt::format("{}{}.jsonl", kRows, experiment); }
+std::string name_of_rows(const std::string& experiment) {
+  return fmt::format("{}{}.jsonl", kRows, experiment);
+}
 
 void read_rows_of(const std::string& name, const std::string& text, Submission& submission, Faults& faults) {
   std::istringstream lines(text);
@@ -64,7 +66,8 @@ void read_rows_of(const std::string& name, const std::string& text, Submission& 
     }
     try {
       submission.rows.push_back({from_json<Row>(json), std::make_shared<const Json>(json), {}});
-      if (const std::string& experiment = submission.rows.back().row.experiment; name != name_of_rows(experiment))
+      if (const std::string& experiment = submission.rows.back().row.experiment;
+          name != name_of_rows(experiment))
         faults.push_back({"schema", fmt::format("{}: a row of the experiment '{}'", place, experiment)});
     } catch (const FieldError& fault) {
       faults.push_back({"schema", fmt::format("{}: {}", place, fault.what())});

@@ -126,8 +126,9 @@ def _line(row):
         verdicts = {name: word for name, word in verdicts.items() if name.removeprefix("verdicts.") in promised}
     size, optimized = row.get("input.size"), row.get("optimization.beyond_bounds")
     path = row.get("input.path")
-    return {"path": path if isinstance(path, str) else row["image"], "image": row["image"], "setting": row["trial"].partition(",")[0], "mesher": row["mesher"],
-            "outcome": outcome, "why": why, "proved": sum(word == "pass" for word in verdicts.values()),
+    return {"path": path if isinstance(path, str) else row["image"], "image": row["image"],
+            "setting": row["trial"].partition(",")[0], "mesher": row["mesher"], "outcome": outcome,
+            "why": why, "proved": sum(word == "pass" for word in verdicts.values()),
             "promised": len(verdicts), "seconds": row.get("process.wall_s"),
             "memory_mib": row.get("process.peak_rss_bytes", numpy.nan) / 2**20, "cells": row.get("cells", numpy.nan),
             "voxels": float(numpy.prod(size)) if isinstance(size, list) else numpy.nan,

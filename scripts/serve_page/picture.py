@@ -53,8 +53,7 @@ def make_showable(path, values):
 
 
 def mesh_parts(path, num_cells, colours):
-    """Returns the description and the bytes for viewer.js; None, without reading, if the page turns no mesh of so many
-    cells."""
+    """Returns the description and the bytes for viewer.js; None, without reading, for more than MOST_CELLS cells."""
     if num_cells > MOST_CELLS:
         return None
     load_vtk()
