@@ -72,7 +72,8 @@ function(podm_add_test name)
   # Most of the time to compile a test goes to headers that the other tests also include.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_BATCH_SIZE 8)
   include(GoogleTest)
-  gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 ENVIRONMENT PODM_BENCH_SINGLE_PROBES=1
+                       DISCOVERY_TIMEOUT 60)
 endfunction()
 
 # podm_add_python_test(NAME COMMAND Python's arguments... [TIMEOUT seconds] [ENVIRONMENT NAME=value...]): runs Python in
@@ -86,7 +87,8 @@ function(podm_add_python_test name)
   add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   # These are the longest tests. They start first, so that none runs alone at the end.
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100 ENVIRONMENT "${ARG_ENVIRONMENT}"
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100
+                                          ENVIRONMENT "PODM_BENCH_SINGLE_PROBES=1;${ARG_ENVIRONMENT}"
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()
 

@@ -14,7 +14,7 @@ void improve(ProbeRecord& probe, const ProbeRecord& other) { probe = best_of(std
 Probe RoundProbes::settled() {
   Probe probe = source_();
   auto* const values = std::get_if<ProbeRecord>(&probe);
-  if (!values) return probe;
+  if (!values || !repeats_) return probe;
   const auto is_slow = [&] { return differ(std::array{best_of(std::array{*best_, *values}), *values}); };
   for (int repeat = 1; best_ ? repeat < kMostRepeats && is_slow() : repeat < kFirstRepeats; ++repeat)
     if (const Probe other = source_(); const auto* const more = std::get_if<ProbeRecord>(&other))

@@ -17,7 +17,9 @@ class RoundProbes {
   /// Maximum number of measurements of a probe, and the number for the run's first one.
   static constexpr int kMostRepeats = 12, kFirstRepeats = 8;
 
-  explicit RoundProbes(ProbeSource source) : source_(std::move(source)) {}
+  /// Without `repeats` each probe is measured once.
+  explicit RoundProbes(ProbeSource source, bool repeats = true)
+      : source_(std::move(source)), repeats_(repeats) {}
 
   /// Call before the first trial of a round. Returns the probe that its rows record.
   Probe begin();
@@ -30,6 +32,7 @@ class RoundProbes {
   Probe settled();
 
   ProbeSource source_;
+  bool repeats_;
   std::optional<ProbeRecord> best_;  ///< of the run so far
   std::optional<Probe> last_;        ///< of the end of the round before
 };

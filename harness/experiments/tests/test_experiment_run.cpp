@@ -59,6 +59,14 @@ TEST(RoundProbes, AProbeThatIsDisturbedForAMomentIsRepeated) {
   EXPECT_EQ(speeds.num_probes(), 4);
 }
 
+TEST(RoundProbes, WithoutRepeatsEachProbeIsMeasuredOnce) {
+  Speeds speeds({1, 0.5});
+  RoundProbes probes(speeds.source(), false);
+  probes.begin();
+  probes.end();
+  EXPECT_EQ(speeds.num_probes(), 0) << "two measurements are fewer than those of a first probe";
+}
+
 TEST(RoundProbes, AMachineThatStaysSlowShows) {
   Speeds speeds({1, 0.5});
   RoundProbes probes(speeds.source());
