@@ -15,7 +15,7 @@ namespace podm::bench {
 class RoundProbes {
  public:
   /// Maximum number of measurements of a probe, and the number for the run's first one.
-  static constexpr int kMostRepeats = 12, kFirstRepeats = 8;
+  static constexpr int kMostRepeats = 6, kFirstRepeats = 8;
 
   /// Without `repeats` each probe is measured once.
   explicit RoundProbes(ProbeSource source, bool repeats = true)
