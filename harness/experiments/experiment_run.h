@@ -28,7 +28,7 @@ struct Session {
   TrialKeys keys;
   TrialRunner runner;
   CountersKeptReady counters;
-  /// Tests of the program set the variable, because nobody compares their seconds.
+  /// Tests of the program set the variable, because they do not compare seconds.
   RoundProbes probes{probe_machine, std::getenv("PODM_BENCH_SINGLE_PROBES") == nullptr};
 };
 
