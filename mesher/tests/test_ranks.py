@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm, slow
+from podm_process import PROGRAM, PodmTestCase, run_podm, slow, start_podm
 from small_images import ball_voxels, write_nifti
 
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]

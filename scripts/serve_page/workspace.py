@@ -160,9 +160,13 @@ class Workspace:
         if self._is_closed:
             raise Fault("The page is closed.", 410)
         self._child = Child(command, self._images, limits or self.tools.limits, on_line)
-        if self._is_closed:  # close() came between
-            self._child.kill()
-        return self._child
+        return self._killed_if_closed(self._child)
+
+    def _killed_if_closed(self, child):
+        """Returns the child. Kills it if close() came before this page knew the child."""
+        if self._is_closed:
+            child.kill()
+        return child
 
     def _kill(self):
         if child := self._child:
@@ -258,9 +262,7 @@ class Workspace:
     def _convert(self, path, folder):
         """Runs podm convert, also while another program makes a mesh."""
         self._converter = Child([self.tools.podm, "convert", self._mesh_path, path], folder, self.tools.limits)
-        if self._is_closed:  # close() came between
-            self._converter.kill()
-        return self._converter.wait()
+        return self._killed_if_closed(self._converter).wait()
 
     def _refuse_if_busy(self):
         if self._state["stage"] in ("meshing", "verifying"):
