@@ -86,9 +86,11 @@ function(podm_add_python_test name)
   find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
   add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  set(shared_modules PYTHONPATH=path_list_append:${PROJECT_SOURCE_DIR}/scripts/tests)
   # These are the longest tests. They start first, so that none runs alone at the end.
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100
                                           ENVIRONMENT "PODM_BENCH_SINGLE_PROBES=1;${ARG_ENVIRONMENT}"
+                                          ENVIRONMENT_MODIFICATION "${shared_modules}"
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()
 

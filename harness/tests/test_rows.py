@@ -10,6 +10,8 @@ import unittest
 
 import jsonschema
 
+from slow import slow
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "results/schema/podm-bench-row.schema.json").read_text()))
@@ -88,6 +90,7 @@ image_grows = true
 
 
 class MemoryLevels(unittest.TestCase):
+    @slow
     def test_a_row_of_the_machine_fits_the_schema(self):
         (row,) = rows_of(LATENCY)
         VALIDATOR.validate(row)

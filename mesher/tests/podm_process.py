@@ -6,12 +6,8 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
-
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "tests"))
-from slow import slow  # noqa: E402, F401  # for the tests that import this module
 
 PROGRAM = os.environ["PODM_PROGRAM"]
 TIMEOUT_S = 240

@@ -5,6 +5,7 @@ import os
 import unittest
 
 from podm_process import PodmTestCase, run_podm
+from slow import few
 
 IMAGE = "phantom:abdomen@40"
 BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight.toml")
@@ -20,8 +21,9 @@ class Home(PodmTestCase):
         return json.loads(runs.read_text().splitlines()[-1])
 
     def test_meshes_verify_and_runs_equal_their_replay(self):
-        for arguments in (["--threads", 1], ["--threads", 4, "--nodes", 2], ["--threads", 6, "--cores-per-node", 1],
-                          ["--threads", 4, "--nodes", 4, "--begging", "random", "--contention", "global"], ON_BLADES):
+        for arguments in few((["--threads", 4, "--nodes", 4, "--begging", "random", "--contention", "global"],
+                              ON_BLADES, ["--threads", 1], ["--threads", 4, "--nodes", 2],
+                              ["--threads", 6, "--cores-per-node", 1]), 2):
             with self.subTest(arguments=arguments):
                 record = self.mesh("podm-home", "--verify", *arguments)
                 self.assertEqual(record["algorithm"], "podm-home")

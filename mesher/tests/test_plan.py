@@ -5,6 +5,7 @@ import unittest
 
 import small_images
 from podm_process import PodmTestCase, run_podm
+from slow import few
 
 
 class Plan(PodmTestCase):
@@ -24,7 +25,7 @@ class Plan(PodmTestCase):
                                         affine=((2, 0, 0, 100), (0, 2, 0, 200), (0, 0, 2, 300)))
 
     def test_cells_and_memory_are_those_of_the_run(self):
-        for options in ("--target-elements", "60000"), ("--radius", "2", "--delta", "1.3"):
+        for options in few((("--radius", "2", "--delta", "1.3"), ("--target-elements", "60000")), 1):
             plan = self.plan("phantom:abdomen@64", *options, "--threads", "1")["plan"]
             process = run_podm("mesh", "phantom:abdomen@64", "-o", self.folder / "m.vtu", *options, "--threads", "1",
                                "--record", self.folder / f"{options[0]}.jsonl")

@@ -1,16 +1,13 @@
 """podm mesh --report: a complete page about a run, or none, with the verdicts and the quality of cells."""
 
 import json
-import pathlib
 import re
 import shutil
 import sys
 import unittest
 
-from podm_process import PROGRAM, PodmTestCase, run_podm, slow
-
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path[:0] = [str(SCRIPTS / "tests")]
+from podm_process import PROGRAM, PodmTestCase, run_podm
+from slow import slow
 
 try:
     import vtk  # noqa: F401

@@ -19,6 +19,7 @@ import zipfile
 
 from podm_process import PROGRAM, PodmTestCase, run_podm
 from serving import Page, Server, ServeTestCase, settings
+from slow import slow
 from small_images import ball_voxels, write_metaimage, write_nifti
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
@@ -437,6 +438,7 @@ class SleepingPrograms(PodmTestCase):
 class Limits(ServeTestCase):
     OPTIONS = ["--max-seconds", "2", "--max-memory-gib", "2"]
 
+    @slow
     def test_a_mesh_that_reaches_a_limit_is_valid_and_the_page_says_so(self):
         image = self.folder / "spheres.nii"
         self.assert_exit(run_podm("phantom", "spheres", "--size", "32", "-o", image), 0)

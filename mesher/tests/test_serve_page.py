@@ -6,11 +6,9 @@ import time
 import unittest
 import zipfile
 
-from podm_process import run_podm, slow
+from podm_process import run_podm
 from serving import ServeTestCase
-
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path[:0] = [str(SCRIPTS / "tests")]
+from slow import slow
 
 try:
     import vtk  # noqa: F401
@@ -103,6 +101,7 @@ class InBrowser(ServeTestCase):
             time.sleep(0.1)
         return path.exists()
 
+    @slow
     def test_labels_of_one_name_become_one(self):
         self.go()
         self.drop()
@@ -147,6 +146,7 @@ class InBrowser(ServeTestCase):
         self.click("#tick-none")
         self.wait_for("document.querySelector('#fault').innerText.includes('No label is ticked')")
 
+    @slow
     def test_a_tab_that_is_closed_takes_its_data_along(self):
         self.go()
         self.drop()

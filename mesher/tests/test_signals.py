@@ -21,6 +21,7 @@ import unittest
 
 from ending_podm import ENDLESS, LONGEST_S, end_of, start_refining
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
+from slow import few
 from small_images import write_nifti
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
@@ -130,7 +131,7 @@ class AnyMoment(PodmTestCase):
 
     def test_one_signal(self):
         for algorithm in ALGORITHMS:
-            for number in signal.SIGINT, signal.SIGTERM:
+            for number in few((signal.SIGINT, signal.SIGTERM), 1):
                 self.disturb(algorithm, [number], MOMENTS, seed=1)
 
     def test_a_second_signal_ends_at_once(self):
@@ -206,7 +207,7 @@ class Refinement(PodmTestCase):
 
     def test_leaves_in_the_making_keep_no_worker_waiting(self):
         """The number of leaves is the largest allowed: making the octree and the queue takes seconds."""
-        for moment_s in 0.3, 0.8, 1.3, 1.8:
+        for moment_s in few((0.8, 0.3, 1.3, 1.8), 1):
             with self.subTest(moment_s=moment_s), tempfile.TemporaryDirectory() as elsewhere:
                 image = write_nifti(pathlib.Path(elsewhere) / "full.nii", bytes([1]) * 24 ** 3, (24, 24, 24))
                 runs = pathlib.Path(elsewhere) / "runs.jsonl"

@@ -42,6 +42,7 @@ class Programs(unittest.TestCase):
         self.assertIn("needs 256 cores, has 2", {cell["reason"] for cell in found["cells"]})
         return done
 
+    @slow
     def test_makes_all_of_the_reference_runs(self):
         self.check_all_made(paths.REFERENCE)
 

@@ -15,6 +15,8 @@ import tarfile
 import tempfile
 import unittest
 
+from slow import slow
+
 EXPERIMENT = """
 title = "T"
 claim = "C"
@@ -423,6 +425,7 @@ class Archives(unittest.TestCase):
         self.assertLess(self.path.stat().st_size, 2**20)
         self.assert_refused("unpacks to more than")
 
+    @slow
     def test_files_that_together_unpack_to_too_much(self):
         self.write(*(self.add(f"rows/{number}.jsonl", bytes(2**26)) for number in range(9)))
         self.assert_refused("it unpacks to more than")

@@ -12,6 +12,7 @@ import unittest
 import numpy as np
 
 from balls import AFFINE, TestCase, balls, hash_of, podm
+from slow import slow
 
 LONG = {"labels": "phantom:abdomen@64", "radius": 8}  # takes a few seconds
 ENDLESS = {"labels": "phantom:abdomen@64", "radius": 1, "max_memory_gib": 100}  # runs until the test ends it
@@ -129,6 +130,7 @@ class ThreadsTest(TestCase):
         longest = max(np.diff([start] + [at for at in counts if start < at < end] + [end]))
         self.assertLess(longest, max(0.5, (end - start) / 2))
 
+    @slow
     def test_meshers_of_several_python_threads_at_once_make_the_meshes_of_one(self):
         images = [balls(dtype, order) for dtype in ("u1", "i4") for order in "CF"] + ["phantom:torus@40"]
         options = [{"threads": 1, "radius": 1}, {"threads": 1, "optimize": True}, {"threads": 1, "min_dihedral": 8},
