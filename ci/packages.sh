@@ -83,11 +83,15 @@ check_sdist() {
 }
 
 check_processor() {
-  for program in podm podm-verify podm-bench; do
-    code=0
-    said=$(qemu-x86_64 -cpu Westmere build/bin/$program --version 2>&1) || code=$?
-    echo "$program on a processor of 2010: $said"
-    [ "$code" = 2 ] && [ "$(echo "$said" | grep -c AVX2)" = 1 ] && [ "$(echo "$said" | wc -l)" = 1 ] || return 1
+  python3 -m zipfile -e "$wheel" "$scratch/processor"
+  chmod +x "$scratch"/processor/podm/bin/*
+  for folder in build/bin "$scratch/processor/podm/bin"; do
+    for program in "$folder/podm" "$folder/podm-verify" "$folder/podm-bench"; do
+      code=0
+      said=$(qemu-x86_64 -cpu Westmere "$program" --version 2>&1) || code=$?
+      echo "$(basename "$program") on a processor of 2010: $said"
+      [ "$code" = 2 ] && [ "$(echo "$said" | grep -c AVX2)" = 1 ] && [ "$(echo "$said" | wc -l)" = 1 ] || return 1
+    done
   done
 }
 

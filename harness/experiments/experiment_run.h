@@ -1,13 +1,13 @@
 // Runs the turns of an experiment that are not measured yet, one after the other, and prints its results.
 #pragma once
 
-#include <cstdlib>
 #include <string>
 
 #include "experiments/commands.h"
 #include "experiments/plan.h"
 #include "experiments/round_probes.h"
 #include "machine/machine.h"
+#include "process/stopwatch.h"
 #include "trials/counters.h"
 #include "trials/preparation.h"
 #include "trials/trial.h"
@@ -28,8 +28,7 @@ struct Session {
   TrialKeys keys;
   TrialRunner runner;
   CountersKeptReady counters;
-  /// Tests of the program set the variable, because they do not compare seconds.
-  RoundProbes probes{probe_machine, std::getenv("PODM_BENCH_SINGLE_PROBES") == nullptr};
+  RoundProbes probes{probe_machine, seconds_count()};
 };
 
 /// Returns true if every turn of the plan has a row of status ok or may be skipped. A promise that a peer

@@ -91,11 +91,16 @@ std::optional<Label> label_of_colours(const Line& line) {
   return Label{*value, name, colour};
 }
 
-// VALUE NAME, or VALUE "NAME"; more words are ignored.
+// VALUE NAME, or VALUE "NAME". Blanks belong to the name; the first number after its first word ends it, as
+// in the tables of MRIcron.
 std::optional<Label> label_of_names(const Line& line) {
   const auto value = line.value();
   if (!value || (line.words.size() < 2 && !line.quoted)) return std::nullopt;
-  return Label{*value, line.quoted ? *line.quoted : line.words[1], std::nullopt};
+  if (line.quoted) return Label{*value, *line.quoted, std::nullopt};
+  std::string name = line.words[1];
+  for (std::size_t i = 2; i < line.words.size() && !number_of<std::uint64_t>(line.words[i]); ++i)
+    name += " " + line.words[i];
+  return Label{*value, name, std::nullopt};
 }
 
 std::optional<Label> label_of(const Line& line, TableFormat format) {

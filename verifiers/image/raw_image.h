@@ -45,7 +45,7 @@ struct RawImage {
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest
   std::size_t num_layers = 1;              ///< values per voxel
-  bool layers_come_first = true;           ///< true: values of a voxel are together; false: those of a layer
+  std::size_t layer_axis = 0;              ///< the axis of the file before which the layers' axis lies
   std::vector<Segment> segments = {};      ///< of several layers; may be there if there is one layer
   std::vector<std::string> warnings = {};  ///< as in Image
 };

@@ -6,6 +6,7 @@
 #include <bit>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "image/byte_source.h"
@@ -178,14 +179,9 @@ void read_layers(const std::string& path, const itk::ImageIOBase& io, const Voxe
   if (raw.num_layers == 1) return;
   if (raw.segments.empty())
     refuse(path, "one value per voxel is needed, this image has " + std::to_string(raw.num_layers));
-  const auto is_of_space = [](const std::string& kind) { return kind == "domain" || kind == "space"; };
+  const std::set<std::string> of_space{"domain", "space", "time", "???", "none"};  // for ITK
   std::istringstream words(voxels.kinds);
-  std::string first, last;
-  for (std::string word; words >> word; last = word)
-    if (first.empty()) first = word;
-  raw.layers_come_first = !is_of_space(first);
-  if (!raw.layers_come_first && is_of_space(last))
-    refuse(path, "the axis of the layers is neither the first nor the last (kinds)");
+  for (std::string kind; words >> kind && of_space.contains(kind);) ++raw.layer_axis;
 }
 
 // ITK's world is LPS.

@@ -153,9 +153,12 @@ void merge_layers(RawImage& raw, const LabelSelection& selection, Image& image) 
   std::vector<bool> is_read(raw.num_layers, selection.layers.empty());
   for (const std::size_t layer : selection.layers) is_read[layer] = true;
   std::vector<std::uint32_t> top(num_voxels);  // 1 + index
+  std::size_t step = 1;                        // between the values of two layers
+  for (std::size_t axis = 0; axis < std::min(raw.layer_axis, raw.size.size()); ++axis)
+    step *= static_cast<std::size_t>(raw.size[axis]);
   for_each_voxel(raw, [&](std::size_t i, auto value) {
-    const std::size_t layer = raw.layers_come_first ? i % raw.num_layers : i / num_voxels;
-    const std::size_t voxel = raw.layers_come_first ? i / raw.num_layers : i % num_voxels;
+    const std::size_t layer = i / step % raw.num_layers;
+    const std::size_t voxel = i / (step * raw.num_layers) * step + i % step;
     if (value == 0 || !is_read[layer]) return;
     const auto number = static_cast<double>(value);
     const bool is_integer = number > 0 && number <= UINT32_MAX && std::floor(number) == number;

@@ -76,6 +76,15 @@ TEST_F(LabelTable, ValueAndNameLines) {
   expect_label(labels[2], 3, "left lobe", std::nullopt);
 }
 
+TEST_F(LabelTable, BlanksBelongToANameThatANumberEnds) {
+  const auto labels = read("1 Left lung\n2  Lobe of  the lung 2001 7\n3 4\n4 nan inf\n");
+  ASSERT_EQ(labels.size(), 4u);
+  expect_label(labels[0], 1, "Left lung", std::nullopt);
+  expect_label(labels[1], 2, "Lobe of the lung", std::nullopt);
+  expect_label(labels[2], 3, "4", std::nullopt);
+  expect_label(labels[3], 4, "nan inf", std::nullopt);
+}
+
 TEST_F(LabelTable, AByteOrderMarkIsSkipped) {
   const auto labels = read(
       "\xef\xbb\xbf"

@@ -31,15 +31,32 @@ def glibc_version(path):
     return max(((int(major), int(minor)) for major, minor in versions), default=(2, 2))
 
 
+def _symbols(path, which):
+    """Returns the dynamic symbols of the file that nm lists with the option `which`, with their versions."""
+    listed = subprocess.run(["nm", "--dynamic", which, path], check=True, capture_output=True, text=True).stdout
+    return {name for kind, name in re.findall(r"^[0-9a-f ]*([A-Za-z]) (\S+)$", listed, re.MULTILINE)
+            if kind not in "vw"}  # a weak one may be missing
+
+
+def undefined(path, libraries):
+    """Returns the symbols that neither the C library, nor Python, nor one of the libraries defines."""
+    without_version = {name for name in _symbols(path, "--undefined-only") if "@" not in name}
+    defined = {name.partition("@")[0] for library in libraries for name in _symbols(library, "--defined-only")}
+    return {name for name in without_version - defined if not name.startswith(("Py", "_Py"))}
+
+
 def check(path):
-    """Raises Unportable if the file needs a library that is neither of the C library nor beside it in the wheel, or if
-    it looks for libraries outside the wheel."""
+    """Raises Unportable if the file needs a library that is neither of the C library nor beside it in the wheel, if it
+    looks for libraries outside the wheel, or if no library defines one of its symbols."""
     inside = [folder for folder in search_path(path) if folder.partition("/")[0] == "$ORIGIN"]
-    beside = {file.name for folder in inside
+    beside = {file.name: file for folder in inside
               for file in (path.parent / folder.removeprefix("$ORIGIN").lstrip("/")).glob("*")}
-    missing = needed(path) - OF_THE_SYSTEM - beside
+    missing = needed(path) - OF_THE_SYSTEM - beside.keys()
     if missing:
         raise Unportable(f"{path}: it needs {', '.join(sorted(missing))}")
     outside = [folder for folder in search_path(path) if folder not in inside]
     if outside:
         raise Unportable(f"{path}: it looks for libraries in {', '.join(outside)}")
+    lacking = undefined(path, [beside[name] for name in needed(path) & beside.keys()])
+    if lacking:
+        raise Unportable(f"{path}: no library defines {', '.join(sorted(lacking))}")

@@ -82,6 +82,22 @@ class Binaries(unittest.TestCase):
                 else:
                     binary.check(program)
 
+    def test_a_symbol_that_no_library_defines_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source, beside, module = (Path(folder, name) for name in ("a.c", "libbeside.so", "module.so"))
+
+            def link(text, output, *libraries):
+                source.write_text(text)
+                subprocess.run(["gcc", "-shared", "-fPIC", source, "-o", output, *libraries, "-Wl,-rpath,$ORIGIN",
+                                f"-Wl,-soname,{output.name}"], check=True)
+
+            link("int beside(void) { return 0; }\n", beside)
+            calls = "int beside(void), PyErr_Occurred(void), puts(const char*), nowhere(void);\nint f(void) { return "
+            link(calls + 'puts("") + beside() + PyErr_Occurred(); }\n', module, beside)
+            binary.check(module)
+            link(calls + "beside() + nowhere(); }\n", module, beside)
+            self.assertRaisesRegex(binary.Unportable, "no library defines nowhere$", binary.check, module)
+
     def test_the_parts_of_a_program_are_those_of_the_project(self):
         parts = BuildTree(BUILD).parts_of("bin/podm-verify")
         self.assertTrue(parts)

@@ -1,4 +1,5 @@
 // Segmentations of 3D Slicer: layers are merged as the verifier documents (image/segmentation.h).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -45,17 +46,25 @@ std::string fields_of(const std::vector<Part>& parts) {
   return fields;
 }
 
-// A file of 2 x 3 x 4 voxels of two layers.
+// A file of 2 x 3 x 4 voxels of two layers, which are axis `layer_axis` of the file.
 std::string segmentation(const std::string& fields, const Layers& layers, bool is_gzipped = false,
-                         bool are_last = false) {
+                         std::size_t layer_axis = 0) {
+  std::vector<std::size_t> sizes{2, 3, 4};
+  std::vector<std::string> directions{"(1,0,0)", "(0,2,0)", "(0,0,3)"}, kinds(3, "domain");
+  const auto at = static_cast<std::ptrdiff_t>(layer_axis);
+  sizes.insert(sizes.begin() + at, 2);
+  directions.insert(directions.begin() + at, "none");
+  kinds.insert(kinds.begin() + at, "list");
   std::string voxels;
-  for (std::size_t i = 0; i < 2 * kVoxelsOfLayer; ++i)
-    voxels +=
-        static_cast<char>(are_last ? layers[i / kVoxelsOfLayer][i % kVoxelsOfLayer] : layers[i % 2][i / 2]);
-  const std::string axes = are_last ? "sizes: 2 3 4 2\nspace directions: (1,0,0) (0,2,0) (0,0,3) none\n"
-                                      "kinds: domain domain domain list\n"
-                                    : "sizes: 2 2 3 4\nspace directions: none (1,0,0) (0,2,0) (0,0,3)\n"
-                                      "kinds: list domain domain domain\n";
+  for (std::size_t i = 0; i < 2 * kVoxelsOfLayer; ++i) {
+    std::vector<std::size_t> place;
+    for (std::size_t axis = 0, rest = i; axis < 4; rest /= sizes[axis++]) place.push_back(rest % sizes[axis]);
+    const std::size_t layer = place[layer_axis];
+    place.erase(place.begin() + at);
+    voxels += static_cast<char>(layers[layer][place[0] + 2 * (place[1] + 3 * place[2])]);
+  }
+  const std::string axes = fmt::format("sizes: {}\nspace directions: {}\nkinds: {}\n", fmt::join(sizes, " "),
+                                       fmt::join(directions, " "), fmt::join(kinds, " "));
   return "NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\n" + axes +
          "space origin: (10,20,30)\nencoding: " + (is_gzipped ? "gzip" : "raw") + "\n" + fields + "\n" +
          (is_gzipped ? deflated(voxels) : voxels);
@@ -93,10 +102,10 @@ TEST(VerifierSegmentation, LaterSegmentsAreAboveEarlierOnes) {
   const Folder folder;
   for (unsigned seed = 0; seed < 20; ++seed)
     for (const bool is_gzipped : {false, true})
-      for (const bool are_last : {false, true}) {
+      for (const std::size_t layer_axis : {0, 1, 2, 3}) {
         const Layers layers = random_layers(kParts, seed);
         const Image image = read_image(
-            folder.write("a.seg.nrrd", segmentation(fields_of(kParts), layers, is_gzipped, are_last)));
+            folder.write("a.seg.nrrd", segmentation(fields_of(kParts), layers, is_gzipped, layer_axis)));
         EXPECT_EQ(image.size, (std::array<int, 3>{2, 3, 4}));
         EXPECT_DOUBLE_EQ(image.voxel_to_ras[3], -10);
         expect_merged(image, kParts, layers, std::greater<>());
