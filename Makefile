@@ -91,7 +91,7 @@ test:
 	$(CONFIGURE) -DPODM_BUILD_TESTS=ON
 	cmake --build build --target all tests
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") $(if $(SLOW),PODM_SLOW_TESTS=1) \
-	  ctest --test-dir build -j$$(( $$(nproc) + 1 )) --output-on-failure
+	  ctest --test-dir build -j$$(n=$$(nproc); echo $$((n < 8 ? n + 1 : 8))) --output-on-failure
 	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
 # A failing seed is added to the seeds that `make test` repeats.

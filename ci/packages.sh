@@ -6,7 +6,7 @@
 #   older      on Debian 11, whose glibc is 2.31, the programs of the wheel run
 #   deb        on Debian 12 with nothing else, apt installs, removes and purges the packages; lintian finds no error
 #   sdist      pip builds the source distribution
-#   processor  a processor without AVX2 gets one sentence from each program
+#   processor  a processor without AVX2 gets one sentence from each program of the build and of the wheel
 # Exits with 1 if one fails.
 set -eu
 cd "$(dirname "$0")/.."
@@ -89,7 +89,7 @@ check_processor() {
     for program in "$folder/podm" "$folder/podm-verify" "$folder/podm-bench"; do
       code=0
       said=$(qemu-x86_64 -cpu Westmere "$program" --version 2>&1) || code=$?
-      echo "$(basename "$program") on a processor of 2010: $said"
+      echo "$program on a processor of 2010: $said"
       [ "$code" = 2 ] && [ "$(echo "$said" | grep -c AVX2)" = 1 ] && [ "$(echo "$said" | wc -l)" = 1 ] || return 1
     done
   done

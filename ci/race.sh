@@ -2,10 +2,11 @@
 # Usage: ci/race.sh [FOLDER]
 # Builds podm, the tests of memory orders and those of in-process ranks in FOLDER/build-race (default: ./build-race),
 # with the thread sanitizer, with threads that yield in the middle of operations (mesher/delaunay/step.h) and with the
-# lock contract (mesher/delaunay/lock_contract.h). Runs the tests. Those of the contract require that it finds planted
-# faults of the lock protocol. Four threads then mesh phantoms for RACE_SECONDS (120), by podm, pdr, pdr-podm and
-# podm-home in turn. Stops with exit code 1 at the first finding, at a mesh that podm-verify rejects, or at a mesh that
-# differs from the replay of its log. Each mesh is made once more and optimised.
+# lock contract (mesher/delaunay/lock_contract.h), without ITK, which phantoms do not need. Runs the tests. Those of
+# the contract require that it finds planted faults of the lock protocol. Four threads then mesh phantoms for
+# RACE_SECONDS (120), by podm, pdr, pdr-podm and podm-home in turn. Stops with exit code 1 at the first finding, at a
+# mesh that podm-verify rejects, or at a mesh that differs from the replay of its log. Each mesh is made once more and
+# optimised.
 #
 # Without the contract, the sanitizer must also find each planted fault (mesher/delaunay/planted_fault.h). If it does
 # not, it would not detect a broken protocol, and the script exits with 1. The tests of memory orders find each order

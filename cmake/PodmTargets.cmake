@@ -55,8 +55,8 @@ function(podm_sources target)
   endforeach()
 endfunction()
 
-# A test that cannot run here prints `skipped: why` and runs nothing. ctest lists it as skipped, not as passed or
-# failed.
+# A Python test that cannot run here prints `skipped: why` and runs nothing. ctest lists it as skipped, not as passed or
+# failed. A GoogleTest program passes; `make test` lists the reasons of its skipped tests.
 set(PODM_SKIPPED "Ran 0 tests in [^\n]*\n\n(OK|NO TESTS RAN) \\(skipped=")
 
 # podm_add_test(NAME SOURCES... LIBS targets...): a GoogleTest program, built by `tests`, and a ctest case of that name.
@@ -73,7 +73,7 @@ function(podm_add_test name)
   # Most of the time to compile a test goes to headers that the other tests also include.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_BATCH_SIZE 8)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 600 ENVIRONMENT PODM_BENCH_UNTIMED=1)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 1800 COST 50 ENVIRONMENT PODM_BENCH_UNTIMED=1)
 endfunction()
 
 # podm_add_python_test(NAME COMMAND Python's arguments... [TIMEOUT seconds] [ENVIRONMENT NAME=value...]): runs Python in
@@ -87,7 +87,7 @@ function(podm_add_python_test name)
   add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   set(shared_modules PYTHONPATH=path_list_append:${PROJECT_SOURCE_DIR}/scripts/tests)
-  # These are the longest tests. They start first, so that none runs alone at the end.
+  # Long tests start first, so that none runs alone at the end.
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100
                                           ENVIRONMENT "PODM_BENCH_UNTIMED=1;${ARG_ENVIRONMENT}"
                                           ENVIRONMENT_MODIFICATION "${shared_modules}"

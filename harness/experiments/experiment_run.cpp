@@ -163,6 +163,8 @@ class ExperimentRun {
   }
 
   void announce() const {
+    if (!seconds_matter())
+      fmt::print(stderr, "PODM_BENCH_UNTIMED is set: the seconds of this run must not be compared\n");
     fmt::print(stderr, "{}: {} of {} trials, {} runs\n", experiment_.title, plan_.trials.size(),
                experiment_.trials.size(), plan_.turns.size());
     if (const std::size_t num_present = plan_.num_present(); num_present > 0)

@@ -28,7 +28,7 @@ struct Session {
   TrialKeys keys;
   TrialRunner runner;
   CountersKeptReady counters;
-  RoundProbes probes{probe_machine, seconds_count()};
+  RoundProbes probes{probe_machine, seconds_matter()};
 };
 
 /// Returns true if every turn of the plan has a row of status ok or may be skipped. A promise that a peer

@@ -5,9 +5,9 @@
 
 namespace podm::bench {
 
-/// False in tests of the program, which set the variable: they do not compare seconds, and need no warm
-/// memory and no second probe of the machine.
-inline bool seconds_count() { return std::getenv("PODM_BENCH_UNTIMED") == nullptr; }
+/// False if PODM_BENCH_UNTIMED is set. Tests of podm-bench set it: they compare no seconds, and need neither
+/// warm memory nor repeated probes of the machine.
+inline bool seconds_matter() { return std::getenv("PODM_BENCH_UNTIMED") == nullptr; }
 
 class Stopwatch {
  public:

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 
+#include "process/stopwatch.h"
+
 namespace podm::bench {
 
 inline constexpr std::size_t kWarmBytes = std::size_t{1} << 30;
@@ -16,6 +18,7 @@ inline constexpr std::size_t kWarmBytes = std::size_t{1} << 30;
 /// Touches the bytes in a separate process. The peak memory of this process, which its children inherit,
 /// stays small.
 inline void warm_memory(std::size_t bytes) {
+  if (!seconds_matter()) return;
   const pid_t child = fork();
   if (child < 0) return;  // the trial then pays for the first touch
   if (child > 0) {

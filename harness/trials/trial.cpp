@@ -75,7 +75,7 @@ std::size_t bytes_to_warm(const Trial& trial) {
 // Warms the memory of one copy, and of further copies up to half of the free memory: the memory must be
 // touched, but not exhausted. Simulated times do not depend on it.
 void warm_memory_of(const Trial& trial) {
-  if (basis_of(trial.options, {}) == Basis::kSimulated || !seconds_count()) return;
+  if (basis_of(trial.options, {}) == Basis::kSimulated) return;
   const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
                           static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));

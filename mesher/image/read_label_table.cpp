@@ -2,6 +2,7 @@
 // format of all lines.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -91,15 +92,21 @@ std::optional<Label> label_of_colours(const Line& line) {
   return Label{*value, name, colour};
 }
 
-// VALUE NAME, or VALUE "NAME". Blanks belong to the name; the first number after its first word ends it, as
-// in the tables of MRIcron.
+bool is_number(const std::string& word) {
+  const auto number = number_of<double>(word);
+  return number && std::isfinite(*number);
+}
+
+// VALUE NAME, or VALUE "NAME". Blanks belong to the name. Numbers at the end, which tables of MRIcron have,
+// do not.
 std::optional<Label> label_of_names(const Line& line) {
   const auto value = line.value();
   if (!value || (line.words.size() < 2 && !line.quoted)) return std::nullopt;
   if (line.quoted) return Label{*value, *line.quoted, std::nullopt};
+  std::size_t end = line.words.size();
+  while (end > 2 && is_number(line.words[end - 1])) --end;
   std::string name = line.words[1];
-  for (std::size_t i = 2; i < line.words.size() && !number_of<std::uint64_t>(line.words[i]); ++i)
-    name += " " + line.words[i];
+  for (std::size_t i = 2; i < end; ++i) name += " " + line.words[i];
   return Label{*value, name, std::nullopt};
 }
 

@@ -246,7 +246,7 @@ class EarlyEnd(PodmTestCase):
 
     def test_time_limit(self):
         started = time.monotonic()
-        process = run_podm(*self.arguments("--max-seconds", "0.2", "--radius", "0.5", "--max-memory-gib", "1000"))
+        process = run_podm(*self.arguments("--max-seconds", "0.5", "--radius", "0.5", "--max-memory-gib", "1000"))
         self.assert_ended_early(process.returncode, process.stderr, "time limit")
         self.assertLess(time.monotonic() - started, 60)
 

@@ -22,19 +22,25 @@ def ball(radius):
 BONE, SKIN = ball(3.5), ball(6.5)
 
 
-def segmentation(layers, segments, encoding="raw", directions="(1,0,0) (0,1,0) (0,0,1)"):
-    """Returns the bytes of a .seg.nrrd. A segment is (name, layer, label value, colour)."""
-    axes, count = f"{SIZE} {SIZE} {SIZE}", len(layers)
+def segmentation(layers, segments, encoding="raw", directions="(1,0,0) (0,1,0) (0,0,1)", layer_axis=0):
+    """Returns the bytes of a .seg.nrrd. A segment is (name, layer, label value, colour). The layers, if there are
+    several, are axis `layer_axis` of the file."""
+    count = len(layers)
+
+    def with_layers(of_layers, *of_space):
+        axes = [*of_space[:layer_axis], of_layers, *of_space[layer_axis:]] if count > 1 else of_space
+        return " ".join(map(str, axes))
+
     fields = ["type: unsigned char", f"dimension: {3 + (count > 1)}", "space: left-posterior-superior",
-              f"sizes: {f'{count} ' if count > 1 else ''}{axes}",
-              f"space directions: {'none ' if count > 1 else ''}{directions}",
-              f"kinds: {'list ' if count > 1 else ''}domain domain domain", f"encoding: {encoding}",
-              "space origin: (3,4,5)"]
+              f"sizes: {with_layers(count, SIZE, SIZE, SIZE)}",
+              f"space directions: {with_layers('none', *directions.split())}",
+              f"kinds: {with_layers('list', *3 * ['domain'])}", f"encoding: {encoding}", "space origin: (3,4,5)"]
     for number, (name, layer, value, colour) in enumerate(segments):
         prefix = f"Segment{number}_"
         fields += [f"{prefix}Color:={colour}", f"{prefix}Extent:=0 15 0 15 0 15", f"{prefix}ID:=Segment_{number}",
                    f"{prefix}LabelValue:={value}", f"{prefix}Layer:={layer}", f"{prefix}Name:={name}"]
-    voxels = bytes(value for values in zip(*layers) for value in values)
+    step = SIZE**layer_axis  # voxels of one layer before some of the next
+    voxels = b"".join(layer[first:first + step] for first in range(0, SIZE**3, step) for layer in layers)
     return ("NRRD0004\n" + "\n".join(fields) + "\n\n").encode() + (
         gzip.compress(voxels) if encoding == "gzip" else voxels)
 
@@ -95,10 +101,12 @@ class SegmentationTest(PodmTestCase):
         for directions in "(1,0,0) (0,1,0) (0,0,1)", OBLIQUE:
             by_hand.write_bytes(segmentation([merged], [], directions=directions))
             self.mesh(by_hand, "plain.mesh")
-            self.mesh(self.write(directions=directions, encoding="gzip"), "arm.mesh", "--verify")
-            plain, of_segments = ([line for line in (self.folder / name).read_text().splitlines() if line[0] != "#"]
-                                  for name in ("plain.mesh", "arm.mesh"))
-            self.assertEqual(of_segments, plain)
+            for layer_axis in 0, 1, 3:
+                arm = self.write(directions=directions, encoding="gzip", layer_axis=layer_axis)
+                self.mesh(arm, "arm.mesh", "--verify")
+                plain, of_segments = ([line for line in (self.folder / name).read_text().splitlines() if line[0] != "#"]
+                                      for name in ("plain.mesh", "arm.mesh"))
+                self.assertEqual(of_segments, plain)
 
     def test_names_and_colours_arrive_in_the_files(self):
         self.mesh(self.write(), "arm.vtu", "--verify")

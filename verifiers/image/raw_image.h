@@ -38,14 +38,14 @@ struct Segment {
 };
 
 struct RawImage {
-  std::vector<std::int64_t> size;  ///< voxels per axis, for all axes of the file
+  std::vector<std::int64_t> size;  ///< voxels per axis of the file, less that of the layers
   VoxelType type = VoxelType::kUint8;
   bool is_swapped = false;                 ///< voxels are not in this machine's byte order
   double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest
   std::size_t num_layers = 1;              ///< values per voxel
-  std::size_t layer_axis = 0;              ///< the axis of the file before which the layers' axis lies
+  std::size_t layer_axis = 0;              ///< axes of `size` before that of the layers
   std::vector<Segment> segments = {};      ///< of several layers; may be there if there is one layer
   std::vector<std::string> warnings = {};  ///< as in Image
 };

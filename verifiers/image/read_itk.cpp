@@ -179,7 +179,7 @@ void read_layers(const std::string& path, const itk::ImageIOBase& io, const Voxe
   if (raw.num_layers == 1) return;
   if (raw.segments.empty())
     refuse(path, "one value per voxel is needed, this image has " + std::to_string(raw.num_layers));
-  const std::set<std::string> of_space{"domain", "space", "time", "???", "none"};  // for ITK
+  const std::set<std::string> of_space{"domain", "space", "time", "???", "none"};  // by ITK
   std::istringstream words(voxels.kinds);
   for (std::string kind; words >> kind && of_space.contains(kind);) ++raw.layer_axis;
 }

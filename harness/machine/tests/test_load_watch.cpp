@@ -65,7 +65,7 @@ TEST(LoadWatch, OwnWorkIsOnesOwn) {
   const ProcessorUse after = processor_use();
   EXPECT_GT(after.own_s, before.own_s);
   EXPECT_GE(after.wall_s - before.wall_s, 0.4);
-  if (!after.busy_s) GTEST_SKIP() << "/proc/stat is not to be had";
+  if (!after.busy_s) GTEST_SKIP() << "skipped: /proc/stat cannot be read";
   EXPECT_LE(elsewhere(before, after), (*after.busy_s - *before.busy_s) / (after.wall_s - before.wall_s));
 }
 

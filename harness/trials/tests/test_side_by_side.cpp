@@ -14,7 +14,7 @@ namespace {
 class SideBySideTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (usable_processors() < 2) GTEST_SKIP() << "one processor";
+    if (usable_processors() < 2) GTEST_SKIP() << "skipped: one processor";
   }
   // $copy is empty in the first copy, otherwise the number of the copy.
   TrialResult run(const std::string& mesh_body) {

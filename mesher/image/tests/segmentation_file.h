@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct SegmentationFile {
   std::vector<SegmentInFile> segments;
   std::vector<std::vector<Voxel>> layers;
   bool is_gzipped = false;
-  bool has_layers_last = false;
+  std::size_t layer_axis = 0;  ///< 0 to 3
   std::string type = "unsigned char";
   std::string directions = "(1,0,0) (0,2,0) (0,0,3)";
   std::string more_fields = {};  ///< appended to the header
@@ -55,8 +56,13 @@ struct SegmentationFile {
     const std::string axes =
         std::to_string(size[0]) + " " + std::to_string(size[1]) + " " + std::to_string(size[2]);
     const auto with_layers = [&](const std::string& of_layers, const std::string& of_space) {
-      if (layers.size() == 1) return of_space;
-      return has_layers_last ? of_space + " " + of_layers : of_layers + " " + of_space;
+      std::istringstream words(of_space);
+      std::string all, word;
+      for (std::size_t axis = 0; axis <= 3; ++axis) {
+        if (layers.size() > 1 && axis == layer_axis) all += of_layers + " ";
+        if (words >> word) all += word + " ";
+      }
+      return all;
     };
     std::string fields =
         "type: " + type + "\ndimension: " + (layers.size() == 1 ? "3" : "4") +
@@ -73,11 +79,11 @@ struct SegmentationFile {
                 "\n" + prefix + "Tags:=Segmentation.Status:inprogress|\n";
     }
     std::vector<Voxel> voxels;
-    if (has_layers_last)
-      for (const auto& layer : layers) voxels.insert(voxels.end(), layer.begin(), layer.end());
-    else
-      for (std::size_t i = 0; i < num_voxels(); ++i)
-        for (const auto& layer : layers) voxels.push_back(layer[i]);
+    std::size_t step = 1;  // voxels that the file has of one layer before it has some of the next
+    for (std::size_t axis = 0; axis < layer_axis; ++axis) step *= static_cast<std::size_t>(size[axis]);
+    for (std::size_t first = 0; first < num_voxels(); first += step)
+      for (const auto& layer : layers)
+        for (std::size_t i = first; i < first + step; ++i) voxels.push_back(layer[i]);
     const std::string data = bytes_of_values(voxels);
     return nrrd_header(fields + "Segmentation_MasterRepresentation:=Binary labelmap\n" + more_fields) +
            (is_gzipped ? deflated(data) : data);

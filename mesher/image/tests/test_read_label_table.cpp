@@ -76,13 +76,17 @@ TEST_F(LabelTable, ValueAndNameLines) {
   expect_label(labels[2], 3, "left lobe", std::nullopt);
 }
 
-TEST_F(LabelTable, BlanksBelongToANameThatANumberEnds) {
-  const auto labels = read("1 Left lung\n2  Lobe of  the lung 2001 7\n3 4\n4 nan inf\n");
-  ASSERT_EQ(labels.size(), 4u);
+TEST_F(LabelTable, BlanksBelongToANameAndNumbersAtItsEndDoNot) {
+  const auto labels = read(
+      "1 Left lung\n2  Lobe of  the lung 2001 7\n3 4\n4 nan inf\n5 liver 0.5 -1\n"
+      "6 Segment 4 of liver\n");
+  ASSERT_EQ(labels.size(), 6u);
   expect_label(labels[0], 1, "Left lung", std::nullopt);
   expect_label(labels[1], 2, "Lobe of the lung", std::nullopt);
   expect_label(labels[2], 3, "4", std::nullopt);
   expect_label(labels[3], 4, "nan inf", std::nullopt);
+  expect_label(labels[4], 5, "liver", std::nullopt);
+  expect_label(labels[5], 6, "Segment 4 of liver", std::nullopt);
 }
 
 TEST_F(LabelTable, AByteOrderMarkIsSkipped) {

@@ -99,10 +99,10 @@ void expect_merged_by_hand(const SegmentationFile<Voxel>& file, const LabelImage
 TEST_F(Segmentation, LaterSegmentsAreAboveEarlierOnes) {
   for (unsigned seed = 0; seed < 10; ++seed)
     for (const bool is_gzipped : {false, true})
-      for (const bool has_layers_last : {false, true}) {
+      for (const std::size_t layer_axis : {0, 1, 2, 3}) {
         Bytes file = arm(seed);
         file.is_gzipped = is_gzipped;
-        file.has_layers_last = has_layers_last;
+        file.layer_axis = layer_axis;
         expect_merged_by_hand(file, read(file));
       }
 }

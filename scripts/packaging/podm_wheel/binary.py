@@ -39,7 +39,8 @@ def _symbols(path, which):
 
 
 def undefined(path, libraries):
-    """Returns the symbols that neither the C library, nor Python, nor one of the libraries defines."""
+    """Returns the symbols without a version that none of the libraries defines. Symbols of the C library have versions;
+    names of Python's begin with Py or _Py."""
     without_version = {name for name in _symbols(path, "--undefined-only") if "@" not in name}
     defined = {name.partition("@")[0] for library in libraries for name in _symbols(library, "--defined-only")}
     return {name for name in without_version - defined if not name.startswith(("Py", "_Py"))}

@@ -50,7 +50,7 @@ std::string fields_of(const std::vector<Part>& parts) {
 std::string segmentation(const std::string& fields, const Layers& layers, bool is_gzipped = false,
                          std::size_t layer_axis = 0) {
   std::vector<std::size_t> sizes{2, 3, 4};
-  std::vector<std::string> directions{"(1,0,0)", "(0,2,0)", "(0,0,3)"}, kinds(3, "domain");
+  std::vector<std::string> directions{"(1,0,0)", "(0,2,0)", "(0,0,3)"}, kinds{"domain", "space", "???"};
   const auto at = static_cast<std::ptrdiff_t>(layer_axis);
   sizes.insert(sizes.begin() + at, 2);
   directions.insert(directions.begin() + at, "none");
