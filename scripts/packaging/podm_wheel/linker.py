@@ -24,9 +24,11 @@ class Linker:
             copy = output / name
             shutil.copy(path, copy)
             copy.chmod(0o755)
-            replaced = [word for pair in originals.items() for word in ("--replace-needed", *pair)]
-            subprocess.run(["patchelf", "--set-soname", name, "--set-rpath", "$ORIGIN", *replaced, copy], check=True)
             subprocess.run(["strip", "--strip-unneeded", copy], check=True)
+            # patchelf 0.14 stores the names of one call at one place.
+            for change in (["--set-soname", name], ["--set-rpath", "$ORIGIN"],
+                           *(["--replace-needed", *pair] for pair in originals.items())):
+                subprocess.run(["patchelf", *change, copy], check=True)
         return sorted(output.iterdir())
 
     @staticmethod
