@@ -19,6 +19,11 @@ def needed(path):
     return set(re.findall(r"\(NEEDED\).*\[(.+)\]", _readelf("--dynamic", path)))
 
 
+def soname(path):
+    """Returns the name by which other files need this library."""
+    return re.search(r"\(SONAME\).*\[(.+)\]", _readelf("--dynamic", path))[1]
+
+
 def search_path(path):
     """Returns the folders in which the file looks for libraries first."""
     found = re.search(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", _readelf("--dynamic", path))

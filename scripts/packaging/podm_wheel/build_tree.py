@@ -23,9 +23,9 @@ class BuildTree:
         commands = json.loads((self.folder / "compile_commands.json").read_text())
         found = []
         for command in commands:
-            if f"/{suffix}/" in "/" + command["output"]:
-                words = shlex.split(command["command"])
-                place = words.index("-o")
+            words = shlex.split(command["command"])
+            place = words.index("-o")
+            if f"/{suffix}/" in "/" + words[place + 1]:
                 found.append(words[:place] + words[place + 2:])
         return found
 

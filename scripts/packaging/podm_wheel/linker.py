@@ -2,6 +2,8 @@
 import shutil
 import subprocess
 
+from .binary import soname
+
 SYSTEM = "/usr/lib/x86_64-linux-gnu"
 # Debian's archives that are position-independent; the others are in static/.
 OF_DEBIAN = ("libboost_thread.a", "libboost_context.a", "libboost_atomic.a", "libarchive.a", "libcrypto.a", "libz.a")
@@ -19,7 +21,7 @@ class Linker:
         output.mkdir(parents=True)
         names = {path: path.name.replace(".so", "-podmark.so")
                  for path in sorted((self.libraries / "bundled").glob("*.so"))}
-        originals = {self._soname(path): name for path, name in names.items()}
+        originals = {soname(path): name for path, name in names.items()}
         for path, name in names.items():
             copy = output / name
             shutil.copy(path, copy)
@@ -30,11 +32,6 @@ class Linker:
                            *(["--replace-needed", *pair] for pair in originals.items())):
                 subprocess.run(["patchelf", *change, copy], check=True)
         return sorted(output.iterdir())
-
-    @staticmethod
-    def _soname(path):
-        return subprocess.run(["patchelf", "--print-soname", path], check=True, capture_output=True,
-                              text=True).stdout.strip()
 
     def program(self, parts, output, libs):
         self._link(["-pie", "-o", output, f"-Wl,-rpath,$ORIGIN/{libs}"], parts)

@@ -1,6 +1,7 @@
 """The version and the metadata of the packages have one place, and make_wheel refuses what would not run elsewhere."""
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -105,6 +106,30 @@ class Binaries(unittest.TestCase):
             self.assertTrue(part.is_file(), part)
             self.assertIn(BUILD, part.parents)
         self.assertIn("libpodm_verify_claims.a", {part.name for part in parts})
+
+    def test_the_commands_of_the_module_compile_its_sources(self):
+        commands = BuildTree(BUILD).compile_commands("podm_python.dir")
+        self.assertTrue(commands)
+        for command in commands:
+            self.assertIn("-c", command)
+            self.assertNotIn("-o", command)
+            self.assertTrue(Path(command[command.index("-c") + 1]).is_file(), command)
+
+    @unittest.skipUnless(shutil.which("patchelf"), "scripts/setup packaging installs patchelf")
+    def test_bundled_libraries_have_names_of_their_own_and_find_each_other(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch)
+            (folder / "bundled").mkdir()
+            for source, options in (("gmp", []), ("mpfr", ["bundled/libgmp.so"])):
+                subprocess.run(["cc", "-shared", "-fPIC", "-x", "c", "-", "-x", "none", "-Wl,--no-as-needed", *options,
+                                f"-Wl,-soname,lib{source}.so.9", "-o", f"bundled/lib{source}.so"], check=True,
+                               input=f"int {source}(void) {{ return 1; }}", text=True, cwd=folder)
+            bundled = linker.Linker(folder, folder / "libs").bundled
+            self.assertEqual([path.name for path in bundled], ["libgmp-podmark.so", "libmpfr-podmark.so"])
+            for path in bundled:
+                self.assertEqual(binary.soname(path), path.name)
+                self.assertEqual(binary.search_path(path), ["$ORIGIN"])
+            self.assertIn("libgmp-podmark.so", binary.needed(bundled[1]))
 
 
 if __name__ == "__main__":
