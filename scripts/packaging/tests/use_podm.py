@@ -20,6 +20,14 @@ EXPERIMENT = """
 title = "Small"
 claim = "A phantom is meshed."
 expected_minutes = 1
+[[claims]]
+name = "guarantees"
+statement = "No cell or boundary facet of the phantom misses a guarantee."
+basis = "measured"
+trials = ["spheres"]
+kind = "bound"
+value = "guarantee_misses"
+at_most = 0
 [inputs.spheres]
 image = "phantom:spheres@16"
 [[trials]]
@@ -75,8 +83,9 @@ class Installation(unittest.TestCase):
                 self.run_program("podm-verify", "a" + ending)
         self.run_program("podm", "mesh", "phantom:spheres@16", "--radius", "5", "--quiet", "-o", "b.vtu", "--surface",
                          "b.stl", "--record", "b.jsonl", "--log", "b.log")
-        self.run_program("podm", "replay", "b.log")
-        self.assertEqual(json.loads((self.folder / "b.jsonl").read_text())["guarantee_misses"], 0)
+        self.run_program("podm", "replay", "phantom:spheres@16", "b.log")
+        guarantees = json.loads((self.folder / "b.jsonl").read_text())["guarantees"]
+        self.assertEqual(set(guarantees.values()), {0})
 
     def test_pictures_and_pages_name_what_they_need(self):
         self.run_program("podm", "mesh", "phantom:spheres@16", "--radius", "5", "--quiet", "-o", "a.vtu")
@@ -85,8 +94,9 @@ class Installation(unittest.TestCase):
                       ["mesh", "phantom:spheres@16", "--radius", "5", "-o", "b.vtu", "--report", "b.html"],
                       ["serve", "--no-browser"]):
             message = self.run_program("podm", *words, exit_code=2).stderr.strip()
-            self.assertEqual(message.count("\n"), 0, message)
-            self.assertIn("vtk", message)
+            reason, *outcome = message.splitlines()
+            self.assertIn("vtk", reason)
+            self.assertLessEqual(len(outcome), 1, message)
         self.assertEqual(set(self.folder.iterdir()), before)
 
     def test_the_harness_runs_an_experiment(self):
