@@ -35,12 +35,15 @@ cmake -S . -B "$build" -G Ninja --toolchain cmake/arm64.cmake -DPODM_SYSROOT="$s
 cmake --build "$build" --target podm $tests
 
 on_arm64="qemu-aarch64-static -L $sysroot"
+# hwloc takes the affinity of all threads of the process. qemu has a thread of its own, which no test can pin.
+left_out=Topology.OfThisMachineHeedsTheAffinity
 table=""
 for test in $tests; do
   echo "== $test"
   start=$(date +%s)
   # shellcheck disable=SC2086  # a list of words
-  $on_arm64 "$build/bin/$test" --gtest_brief=1 > "$build/tests.txt" 2>&1 || { cat "$build/tests.txt"; exit 1; }
+  $on_arm64 "$build/bin/$test" --gtest_brief=1 --gtest_filter=-$left_out \
+    > "$build/tests.txt" 2>&1 || { cat "$build/tests.txt"; exit 1; }
   passed=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) tests\?\.$/\1/p' "$build/tests.txt")
   skipped=$(sed -n 's/^\[  SKIPPED \] \([0-9]*\) tests\?.*/\1/p' "$build/tests.txt")
   table="$table$(printf '%-20s %6s %7s %7s' "$test" "$passed" "${skipped:-0}" $(($(date +%s) - start)))

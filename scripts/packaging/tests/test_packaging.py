@@ -38,6 +38,7 @@ class Version(InFolder):
     def test_the_metadata_have_it_and_name_the_licence(self):
         info = wheel.metadata(ROOT, self.folder)
         self.assertEqual(info.name, f"podmark-{VERSION}.dist-info")
+        self.assertEqual(list(self.folder.iterdir()), [info])
         text = (info / "METADATA").read_text()
         self.assertIn(f"\nName: podmark\nVersion: {VERSION}\n", text)
         self.assertIn("\nLicense: BSD-3-Clause\n", text)
