@@ -74,7 +74,7 @@ check_deb() {
 }
 
 check_sdist() {
-  python3 -m venv --system-site-packages "$scratch/env"
+  /usr/bin/python3 -m venv --system-site-packages "$scratch/env"
   PODM_BUILD="$scratch/build" "$scratch/env/bin/python3" -m pip install --quiet --no-index --no-build-isolation \
     dist/podmark-"$version".tar.gz
   (cd "$scratch" && PODM_EXPECTED_VERSION=$version PATH=$scratch/env/bin:$PATH "$scratch/env/bin/python3" -B \
