@@ -11,7 +11,7 @@ from pathlib import Path
 from views.mesh import MeshError
 from views.read_mesh import read_mesh
 
-from .experiment_verdicts import HOW, VerdictsError, counts, read_experiment_verdicts
+from .experiment_verdicts import HOW, WITHDRAWN, VerdictsError, counts, read_experiment_verdicts
 from .load import RecordError, load
 from .outcome import MEASURED_TABLES, make, readable_experiments, readable_verdicts
 from .schedule import ScheduleError, read_schedule
@@ -94,8 +94,9 @@ def print_experiments(found):
         print(HOW)
         return
     for line in readable_experiments(found).to_dict("records"):
-        print(f"{line['verdict'].replace('_', ' '):18} {line['experiment']}: {line['statement']} ({line['basis']}): "
-              f"{line['reason']}")
+        what = line["statement"] or line["claim"]
+        basis = "" if line["verdict"] == WITHDRAWN else f" ({line['basis']})"
+        print(f"{line['verdict'].replace('_', ' '):18} {line['experiment']}: {what}{basis}: {line['reason']}")
     print(f"claims of experiments: {counts(found)}")
 
 

@@ -1,4 +1,6 @@
 """Tests tables, figures and verdicts from synthetic rows."""
+import contextlib
+import io
 import math
 import unittest
 
@@ -7,6 +9,7 @@ import pandas
 import synthetic
 from figures import (cache, experiment_verdicts, fig1, fig4a, fig4b, guarantees, outcome, paper, peers, scaling,
                      simulated, spread, table1, table2, table3)
+from figures.__main__ import print_experiments
 from figures.load import derived
 from figures.write import markdown, svg_of
 
@@ -288,6 +291,13 @@ class Experiments(unittest.TestCase):
         found = experiment_verdicts.table(self.FOUND).set_index("claim")
         self.assertEqual(found.loc["one", "interval"], "1.25 to 1.75, 75.0 % of 3 rounds")
         self.assertEqual(found.loc["zero", "reason"], "superseded by another: because of <zero>")
+
+    def test_each_claim_is_printed_with_its_basis_or_as_withdrawn(self):
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            print_experiments(self.FOUND)
+        self.assertNotIn("nan", printed.getvalue())
+        self.assertIn("withdrawn          weak_scaling: zero was so: superseded by another", printed.getvalue())
+        self.assertRegex(printed.getvalue(), r"does not hold      weak_scaling: .+ \(measured\): ")
 
     def test_without_any(self):
         self.assertTrue(experiment_verdicts.table(None).empty)
