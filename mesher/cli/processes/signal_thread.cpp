@@ -68,7 +68,7 @@ SignalThread::SignalThread() {
   for (int number = 1; number <= SIGRTMAX; ++number) {
     if (!is_awaited(number, mask_before_)) continue;
     sigaddset(&awaited_, number);
-    any_awaited_ = number;
+    if (any_awaited_ == 0) any_awaited_ = number;  // qemu does not deliver all of the last ones
   }
   if (any_awaited_ == 0) return;
   pthread_sigmask(SIG_BLOCK, &awaited_, nullptr);
