@@ -13,8 +13,11 @@ cd "$(dirname "$0")/.."
 scripts/setup build packaging cluster
 scratch=$(mktemp -d)
 chmod 755 "$scratch"
+# Ends the daemons. They write into $scratch until they have ended.
 end() {
-  for file in "$scratch"/*.pid; do [ ! -e "$file" ] || kill "$(cat "$file")" 2> /dev/null || true; done
+  daemons=$(cat "$scratch"/*.pid 2> /dev/null || true)
+  for pid in $daemons; do kill "$pid" 2> /dev/null || true; done
+  for pid in $daemons; do while kill -0 "$pid" 2> /dev/null; do sleep 0.1; done; done
   rm -rf "$scratch"
 }
 trap end EXIT
