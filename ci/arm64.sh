@@ -4,7 +4,8 @@
 # of Debian's arm64 into FOLDER/build-arm64/sysroot (default: ./build-arm64/sysroot), where nothing of this machine
 # changes, and builds in FOLDER/build-arm64. The tests cover geometry, the kernel, rules, workers, algorithms, files and
 # mesh files. Then podm makes the meshes of results/reference/canonical_hashes.json, which must equal those of x86-64.
-# Prints the tests and seconds of each program. Exits with 1 if a test fails or a mesh differs.
+# One test of affinity is left out. Prints the tests and seconds of each program. Exits with 1 if a test fails or a
+# mesh differs.
 #
 # qemu does not reorder memory accesses as an arm64 processor may. ci/race.sh proves the memory orders.
 set -eu
@@ -35,7 +36,7 @@ cmake -S . -B "$build" -G Ninja --toolchain cmake/arm64.cmake -DPODM_SYSROOT="$s
 cmake --build "$build" --target podm $tests
 
 on_arm64="qemu-aarch64-static -L $sysroot"
-# hwloc takes the affinity of all threads of the process. qemu has a thread of its own, which no test can pin.
+# The topology is that of the processors of all threads of the process. qemu has a thread that the test does not pin.
 left_out=Topology.OfThisMachineHeedsTheAffinity
 table=""
 for test in $tests; do

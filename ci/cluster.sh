@@ -13,11 +13,15 @@ cd "$(dirname "$0")/.."
 scripts/setup build packaging cluster
 scratch=$(mktemp -d)
 chmod 755 "$scratch"
-# Ends the daemons. They write into $scratch until they have ended.
+is_alive() { case $(ps -o stat= -p "$1") in '' | Z*) return 1 ;; esac; }
+# Ends the daemons, at the latest after 30 seconds each. They write into $scratch until they have ended.
 end() {
   daemons=$(cat "$scratch"/*.pid 2> /dev/null || true)
   for pid in $daemons; do kill "$pid" 2> /dev/null || true; done
-  for pid in $daemons; do while kill -0 "$pid" 2> /dev/null; do sleep 0.1; done; done
+  for pid in $daemons; do
+    for _ in $(seq 300); do is_alive "$pid" || break; sleep 0.1; done
+    if is_alive "$pid"; then kill -9 "$pid" 2> /dev/null || true; fi
+  done
   rm -rf "$scratch"
 }
 trap end EXIT

@@ -269,6 +269,15 @@ class DihedralPhases(PodmTestCase):
         self.assert_proved("structure", "radius_edge", "boundary_angles", "conformity")
 
 
+class End(PodmTestCase):
+    def test_a_user_whose_queue_of_signals_is_full_waits_for_nothing(self):
+        def no_queue():
+            resource.setrlimit(resource.RLIMIT_SIGPENDING, (0, 0))
+        process = run_podm("mesh", "phantom:spheres@16", "--radius", 5, "-o", self.folder / "out.vtu",
+                           preexec_fn=no_queue)
+        self.assert_exit(process, 0)
+
+
 class OtherCommands(PodmTestCase):
     def test_a_phantom_is_written_whole_or_not_at_all(self):
         image = self.folder / "p.nii.gz"

@@ -16,6 +16,7 @@ from .sources import ROOT
 
 HASHES = ROOT / "results" / "reference" / "canonical_hashes.json"
 SCHEMA = "podm-canonical-hashes/1"
+LONGEST_S = 1200  # of one mesh, also where the processor is emulated
 VIRTUAL = ["--executor", "virtual", "--threads", "64", "--seed", "1", "--pin", "compact",
            "--topology", "experiments/machines/blacklight.toml"]
 MESHES = {
@@ -46,8 +47,11 @@ def compute(program):
 
 def _hash_of(program, name, arguments, folder):
     record = folder / f"{name}.jsonl"
-    done = subprocess.run([program, "mesh", *arguments, "--quiet", "--record", record, "-o", folder / "mesh.vtu"],
-                          cwd=ROOT, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run([program, "mesh", *arguments, "--quiet", "--record", record, "-o", folder / "mesh.vtu"],
+                              cwd=ROOT, capture_output=True, text=True, check=False, timeout=LONGEST_S)
+    except subprocess.TimeoutExpired as error:
+        raise HashesError(f"{name}: {program} did not end within {LONGEST_S} s") from error
     if not record.exists():
         raise HashesError(f"{name}: {program} ended with {done.returncode}: {done.stderr.strip()}")
     return json.loads(record.read_text())["mesh_sha256"]

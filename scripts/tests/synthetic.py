@@ -123,7 +123,7 @@ def experiment_verdicts(**verdicts):
                "reason": f"because of <{name}>", "value": 1.5, "interval": interval, "rounds_needed": None,
                "bound": "at least 2", "sizes": [], "n": 3}
               for name, verdict in verdicts.items() if verdict != "withdrawn"]
-    withdrawn = [{"name": name, "statement": f"{name} was so", "verdict": verdict, "reason": f"because of <{name}>",
+    withdrawn = [{"name": name, "statement": "", "verdict": verdict, "reason": f"because of <{name}>",
                   "superseded_by": "another"} for name, verdict in verdicts.items() if verdict == "withdrawn"]
     return {"schema": "podm-bench-verdicts/2", "experiments": [
         {"experiment": "weak_scaling", "title": "Weak scaling", "claim": "so", "paper": "Table 1", "claims": claims,

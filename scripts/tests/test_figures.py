@@ -296,7 +296,7 @@ class Experiments(unittest.TestCase):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             print_experiments(self.FOUND)
         self.assertNotIn("nan", printed.getvalue())
-        self.assertIn("withdrawn          weak_scaling: zero was so: superseded by another", printed.getvalue())
+        self.assertIn("withdrawn          weak_scaling: zero: superseded by another", printed.getvalue())
         self.assertRegex(printed.getvalue(), r"does not hold      weak_scaling: .+ \(measured\): ")
 
     def test_without_any(self):

@@ -68,7 +68,8 @@ SignalThread::SignalThread() {
   for (int number = 1; number <= SIGRTMAX; ++number) {
     if (!is_awaited(number, mask_before_)) continue;
     sigaddset(&awaited_, number);
-    if (any_awaited_ == 0) any_awaited_ = number;  // qemu does not deliver all of the last ones
+    // The first is no real-time signal. Those may be lost: by qemu, or where the user's queue is full.
+    if (any_awaited_ == 0) any_awaited_ = number;
   }
   if (any_awaited_ == 0) return;
   pthread_sigmask(SIG_BLOCK, &awaited_, nullptr);

@@ -27,7 +27,7 @@ class Linker:
             shutil.copy(path, copy)
             copy.chmod(0o755)
             subprocess.run(["strip", "--strip-unneeded", copy], check=True)
-            # patchelf 0.14 stores the names of one call at one place.
+            # patchelf 0.14 writes all names of one call to the same place: each call changes one.
             for change in (["--set-soname", name], ["--set-rpath", "$ORIGIN"],
                            *(["--replace-needed", *pair] for pair in originals.items())):
                 subprocess.run(["patchelf", *change, copy], check=True)

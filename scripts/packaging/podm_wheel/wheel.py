@@ -12,7 +12,8 @@ def metadata(root, folder):
             "print(prepare(sys.argv[1]))")
     done = subprocess.run([sys.executable, "-c", code, folder], cwd=root / "mesher/python", check=True,
                           capture_output=True, text=True)
-    for other in folder.glob("*.egg-info"):  # of setuptools, in which pip would look for the files to uninstall
+    # setuptools leaves this folder. pip would read it instead of RECORD when it uninstalls.
+    for other in folder.glob("*.egg-info"):
         shutil.rmtree(other)
     return folder / done.stdout.split()[-1]
 

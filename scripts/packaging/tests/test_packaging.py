@@ -116,7 +116,7 @@ class Binaries(unittest.TestCase):
             self.assertNotIn("-o", command)
             self.assertTrue(Path(command[command.index("-c") + 1]).is_file(), command)
 
-    @unittest.skipUnless(shutil.which("patchelf"), "scripts/setup packaging installs patchelf")
+    @unittest.skipUnless(shutil.which("patchelf"), "patchelf is not installed")
     def test_bundled_libraries_have_names_of_their_own_and_find_each_other(self):
         with tempfile.TemporaryDirectory() as scratch:
             folder = Path(scratch)
