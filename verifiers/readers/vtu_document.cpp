@@ -181,7 +181,6 @@ class VtuParser : XmlParser {
 
   VtuDocument document_;
   std::vector<std::string> elements_;  // open elements, outermost first
-  const char** attributes_ = nullptr;  // of the starting element
   VtuArray* array_ = nullptr;          // open array that is kept
   std::size_t array_depth_ = 0;
   std::size_t text_begin_ = 0;
