@@ -51,13 +51,14 @@ class LeafGrid {
   // Returns the leaf itself and ring 1.
   const std::vector<std::uint32_t>& around(std::uint32_t leaf) {
     const auto [place, is_new] = around_.try_emplace(leaf);
+    std::vector<std::uint32_t>& leaves = place->second;
     if (is_new) {
       tree_.for_each_near([&](const Bounds& box) { return meet(box, cubes_[leaf]); },
                           [&](std::uint32_t other) {
-                            if (touch(leaf, other)) place->second.push_back(other);
+                            if (touch(leaf, other)) leaves.push_back(other);
                           });
     }
-    return place->second;
+    return leaves;
   }
 
  private:
