@@ -111,10 +111,11 @@ std::vector<std::string> labels_of(const std::vector<RowGroup>& groups) {
   std::vector<std::string> labels;
   for (const RowGroup& group : groups) {
     std::vector<std::string> parts;
-    for (const auto& [key, value] : group.options.items())
-      if (std::any_of(groups.begin(), groups.end(),
-                      [&](const RowGroup& other) { return option(other.options, key) != value; }))
-        parts.push_back(describe(key, value));
+    for (const auto& item : group.options.items())
+      if (std::any_of(groups.begin(), groups.end(), [&](const RowGroup& other) {
+            return option(other.options, item.key()) != item.value();
+          }))
+        parts.push_back(describe(item.key(), item.value()));
     labels.push_back(fmt::format("{}", fmt::join(parts, ", ")));
   }
   return labels;
