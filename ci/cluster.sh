@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 scripts/setup build packaging cluster
 scratch=$(mktemp -d)
 chmod 755 "$scratch"
-is_alive() { case $(ps -o stat= -p "$1") in '' | Z*) return 1 ;; esac; }
+is_alive() { case $(sed -n 's/^State:[[:space:]]*//p' "/proc/$1/status" 2> /dev/null) in '' | Z*) return 1 ;; esac; }
 # Ends the daemons, at the latest after 30 seconds each. They write into $scratch until they have ended.
 end() {
   daemons=$(cat "$scratch"/*.pid 2> /dev/null || true)
