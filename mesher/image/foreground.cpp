@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "image/rows_of_image.h"
+#include "image/stretches.h"
 #include "image/working_frame.h"
 #include "podm/errors.h"
 
@@ -13,10 +14,14 @@ namespace {
 
 // Adds the voxels of a row.
 void add_row(const LabelIndex* row, int size, LabelCounts& counts) {
-  for (int i = 0, end = 0; i < size; i = end) {
-    while (end < size && row[end] == row[i]) ++end;
-    counts.of_label[row[i]] += static_cast<std::uint64_t>(end - i);
-  }
+  for_each_stretch(row, sizeof *row, 0, static_cast<std::size_t>(size),
+                   [&](std::size_t from, std::size_t to, bool is_uniform) {
+                     if (is_uniform) {
+                       counts.of_label[row[from]] += to - from;
+                     } else {
+                       for (std::size_t i = from; i < to; ++i) ++counts.of_label[row[i]];
+                     }
+                   });
 }
 
 // The bounds of the foreground of some rows.

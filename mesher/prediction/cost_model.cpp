@@ -24,12 +24,19 @@ std::uint64_t count_foreground(const LabelIndex* row, int size) {
   return count;
 }
 
-// Counts the sides of interfaces that have a label.
+// Counts the sides of interfaces that have a label. The counts of a part of the row fit in the words of the
+// labels, so that one instruction of the processor counts as many pairs as it compares.
 std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
-  std::uint32_t count = 0;
-  for (int i = 0; i < size; ++i)
-    count += a[i] == b[i] ? 0u : (a[i] != kBackground ? 1u : 0u) + (b[i] != kBackground ? 1u : 0u);
-  return count;
+  constexpr int kPart = 1 << 14;
+  std::uint64_t sum = 0;
+  for (int begin = 0; begin < size; begin += kPart) {
+    LabelIndex count = 0;
+    for (int i = begin; i < std::min(size, begin + kPart); ++i)
+      count =
+          static_cast<LabelIndex>(count + (a[i] == b[i] ? 0 : (a[i] != kBackground) + (b[i] != kBackground)));
+    sum += count;
+  }
+  return sum;
 }
 
 // Counts sides between voxels `lag` apart along the axis. Counts all pairs whose first voxel is in the row,
