@@ -49,6 +49,13 @@ Sum determinant(const Vector& u, const Vector& v, const Vector& w) {
           std::fabs(w.x) * x.size + std::fabs(w.y) * y.size + std::fabs(w.z) * z.size};
 }
 
+// True if the four points have one coordinate in common, as those on a flat face of voxels do. Filters cannot
+// decide that their determinant is 0.
+bool are_in_plane_of_axes(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const auto are_equal = [](double i, double j, double k, double l) { return i == j && i == k && i == l; };
+  return are_equal(a.x, b.x, c.x, d.x) || are_equal(a.y, b.y, c.y, d.y) || are_equal(a.z, b.z, c.z, d.z);
+}
+
 // Returns the power of p, the origin of all four vectors, against the circumsphere of a positive cell;
 // positive inside.
 Sum power(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
@@ -79,6 +86,7 @@ bool in_perturbed_circumsphere(const std::array<const Point*, 4>& cell, const Po
 
 int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
   if (const auto sign = determinant(b - a, c - a, d - a).sign(kOrientationError)) return *sign;
+  if (are_in_plane_of_axes(a, b, c, d)) return 0;
   return CGAL::orientation(convert_exactly(a), convert_exactly(b), convert_exactly(c), convert_exactly(d));
 }
 
