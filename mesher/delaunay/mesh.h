@@ -28,6 +28,10 @@ inline constexpr FacetId kNoFacet = 0xffffffffu;  // beyond the virtual box
 inline constexpr CellId cell_of(FacetId f) { return f >> 2; }
 inline constexpr int index_in_cell(FacetId f) { return static_cast<int>(f & 3); }
 
+/// A set of a cell's facets, one bit per local index.
+using FacetMask = unsigned;
+inline constexpr FacetMask kAllFacets = 0xf;
+
 enum class VertexKind : std::uint8_t {
   kUnused,
   kBox,           // corner of the virtual box, never removed
@@ -70,7 +74,7 @@ inline constexpr LabelIndex kUnknownLabel = 0xffff;
 struct alignas(64) Cell {
   Point center;                      // the circumcenter
   float squared_radius = 0;          // rounded, or NaN: circumsphere.h
-  std::uint16_t stamp_and_bits = 0;  // Mesh::stamp, Mesh::is_marked and Mesh::relies_on_others
+  std::uint16_t stamp_and_bits = 0;  // Mesh::stamp, is_marked, relies_on_others and facets_passing_r3
   LabelIndex label = kUnknownLabel;  // the image's label at the circumcenter, once looked up
   std::array<VertexId, 4> vertices{kNoVertex, kNoVertex, kNoVertex, kNoVertex};
   std::array<FacetId, 4> mirrors{};  // per facet, the mirror facet on its other side
@@ -149,6 +153,19 @@ class Mesh {
     assert_may_read(*this, c);
     if (has(c, kReliance) != relies_on_others) put(c, kReliance, relies_on_others);
   }
+  /// The facets, one bit per local index, to which R3 did not apply when it was tested on them from this
+  /// cell. The other cell of such a facet is still the same. Empty for a new cell.
+  FacetMask facets_passing_r3(CellId c) const {
+    step();
+    assert_may_read(*this, c);
+    return load(cells_[c].stamp_and_bits, std::memory_order_relaxed) >> kFirstPassing & kAllFacets;
+  }
+  /// Adds to facets_passing_r3(). The caller has reserved the cell.
+  void add_facets_passing_r3(CellId c, FacetMask facets) {
+    step();
+    assert_may_read(*this, c);
+    put(c, static_cast<std::uint16_t>(facets << kFirstPassing), true);
+  }
   /// Puts a new cell in the slot c, or none (vertices kNoVertex). The caller sets its sphere and mirrors.
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
     Cell& cell = cells_[c];
@@ -183,13 +200,15 @@ class Mesh {
   /// ids of its vertices and mirrors. No other worker may use either slot.
   void move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,
                  const std::array<FacetId, 4>& mirrors);
-  /// Records that `mirror` is the other side of the facet `of`. Does nothing beyond the box.
+  /// Records that `mirror` is the other side of the facet `of`, whose dual edge changes. Does nothing beyond
+  /// the box.
   void set_mirror(FacetId of, FacetId mirror) {
     step();
     if (of == kNoFacet) return;
     assert_may_write_mirrors(*this, cell_of(of));
     store(cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))], mirror,
           std::memory_order_relaxed);
+    put(cell_of(of), static_cast<std::uint16_t>(1u << (kFirstPassing + index_in_cell(of))), false);
   }
 
   /// Prefetch cache lines: of a cell, of a vertex, of a cell's vertices, of its neighbours, and of vertices
@@ -256,12 +275,13 @@ class Mesh {
   bool has(CellId c, std::uint16_t bit) const {
     return (load(cells_[c].stamp_and_bits, std::memory_order_relaxed) & bit) != 0;
   }
-  void put(CellId c, std::uint16_t bit, bool is_set) {
+  void put(CellId c, std::uint16_t bits, bool are_set) {
     std::uint16_t& word = cells_[c].stamp_and_bits;
-    store(word, static_cast<std::uint16_t>(is_set ? word | bit : word & ~bit), std::memory_order_relaxed);
+    store(word, static_cast<std::uint16_t>(are_set ? word | bits : word & ~bits), std::memory_order_relaxed);
   }
 
-  static constexpr std::uint16_t kStampBits = 0x3fff, kReliance = 0x4000, kMark = 0x8000;
+  static constexpr std::uint16_t kStampBits = 0x3ff, kReliance = 0x4000, kMark = 0x8000;
+  static constexpr int kFirstPassing = 10;
   IdArena cell_ids_, vertex_ids_;
 };
 

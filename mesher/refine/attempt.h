@@ -105,12 +105,14 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
     if (sampled != Outcome::kRejected) return sampled;
   }
   if (const auto p = rules_.r2_center(t)) return insert_circumcenter(*p, c, Rule::kR2);
-  if (const auto center = rules_.r3_surface_center(t)) {
+  const FacetSearch search = rules_.search_facets(t, Rules::Facets::kUntested);
+  if (search.center) {
     const std::uint16_t stamp = mesh_.stamp(c);
-    const Outcome sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
+    const Outcome sampled = insert_on_isosurface(search.center->point, search.center->start, Rule::kR3);
     if (sampled == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
     return sampled;
   }
+  mesh_.add_facets_passing_r3(c, search.passing);
   if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
   return Outcome::kSound;
 }

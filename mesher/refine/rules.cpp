@@ -162,23 +162,52 @@ bool RulesOn<Cells>::is_restricted(const Examination& t, CellId neighbor) const 
   return ask([&](const auto& oracle) { return oracle.is_crossed(start, end, t.label); });
 }
 
+// R3 tests the facet itself, its two cells and the image: both cells come to one answer. Cells that an
+// operation plans have facets that were never tested.
 template <class Cells>
-std::optional<SurfaceCenter> RulesOn<Cells>::r3_surface_center(const Examination& t) const {
+FacetMask RulesOn<Cells>::facets_tested_before(CellId c) const {
+  if constexpr (std::same_as<Cells, Mesh>) {
+    FacetMask tested = mesh_.facets_passing_r3(c);
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId mirror = mesh_.cell(c).mirrors[k];
+      if (mirror != kNoFacet)
+        tested |= (mesh_.facets_passing_r3(cell_of(mirror)) >> index_in_cell(mirror) & 1) << k;
+    }
+    return tested;
+  }
+  return 0;
+}
+
+template <class Cells>
+FacetSearch RulesOn<Cells>::search_facets(const Examination& t, Facets facets) const {
+  FacetSearch search{.center = {}, .passing = 0};
+  const FacetMask tested = facets == Facets::kUntested ? facets_tested_before(t.cell) : 0;
   for (unsigned k = 0; k < 4; ++k) {
     const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
-    if (mirror == kNoFacet) continue;
+    if (mirror == kNoFacet || (tested >> k & 1) != 0) continue;
     const CellId neighbor = cell_of(mirror);
-    if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k) || !is_restricted(t, neighbor)) continue;
-    // The search goes from the lexicographically smaller center to the larger one: both cells of the facet
-    // find the same point.
-    const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
-    if (lexicographically_less(*to, *from)) std::swap(from, to);
-    const std::optional<Point> z =
-        ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });
-    if (!z) continue;
-    for (const CellId start : {t.cell, neighbor}) {
-      if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
-    }
+    const bool may_be = may_be_restricted(t, neighbor);
+    // The other cell may find otherwise if it has a distance that is proven, or another that is not.
+    if (!may_be && !t.is_distance_proven) continue;
+    if (may_be && needs_sample(t.cell, k) && is_restricted(t, neighbor))
+      search.center = surface_center(t, neighbor);
+    if (search.center) return search;
+    search.passing |= 1u << k;
+  }
+  return search;
+}
+
+// The search goes from the lexicographically smaller center to the larger one: both cells of the facet find
+// the same point.
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::surface_center(const Examination& t, CellId neighbor) const {
+  const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
+  if (lexicographically_less(*to, *from)) std::swap(from, to);
+  const std::optional<Point> z =
+      ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });
+  if (!z) return std::nullopt;
+  for (const CellId start : {t.cell, neighbor}) {
+    if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
   }
   return std::nullopt;
 }

@@ -78,6 +78,12 @@ struct SurfaceCenter {
   CellId start;  // a cell in conflict with it
 };
 
+/// What R3 finds at the facets of a cell.
+struct FacetSearch {
+  std::optional<SurfaceCenter> center;
+  FacetMask passing;  // facets on which R3 was tested and to which it does not apply
+};
+
 /// `Cells` is the mesh, or the cells that an operation plans (delaunay/vertex_move.h).
 template <class Cells>
 class RulesOn {
@@ -101,7 +107,13 @@ class RulesOn {
   /// Returns the isosurface point nearest to p, if within `radius_mm`.
   std::optional<Point> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
-  std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
+  std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const {
+    return search_facets(t, Facets::kAll).center;
+  }
+  enum class Facets { kAll, kUntested };
+  /// Searches for a surface center as r3_surface_center() does. kUntested: except at facets on which R3 was
+  /// tested before, from one cell or the other (Mesh::facets_passing_r3).
+  FacetSearch search_facets(const Examination& t, Facets facets) const;
   /// Returns R4 or R5 if it applies; both insert the circumcenter.
   std::optional<Rule> volume_rule(const Examination& t) const;
   /// The conditions of R4 and R5 for a cell inside the object.
@@ -128,8 +140,10 @@ class RulesOn {
   double distance_lower_bound(const Point& p, double radius) const;
   Cover covered_by(const Cell& cell) const;
   bool is_covered_beside(CellId c, const Point& z) const;
+  FacetMask facets_tested_before(CellId c) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_restricted(const Examination& t, CellId neighbor) const;
+  std::optional<SurfaceCenter> surface_center(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
