@@ -148,8 +148,9 @@ class FeatureWriter {
       std::size_t count = 0;
       for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
         const auto p = static_cast<unsigned>(std::countr_zero(rest));
-        bits[count++] = neighborhoods.around(p).bits();
-        of_voxels[p] = Layout::kSurface | std::min(neighborhoods.label(p), Layout::kLabelTooLarge);
+        const Neighborhood around = neighborhoods.around(p);
+        bits[count++] = around.bits();
+        of_voxels[p] = StoredFeature::word_of_surface(around, neighborhoods.label(p));
       }
       to[kMaskAt] = mask;
       std::memcpy(to + kMaskAt + 1, bits.data(), count * sizeof bits[0]);

@@ -11,9 +11,9 @@
 //
 // A near brick has a 16-bit word per voxel: the offset to the voxel's feature, unless the feature is
 // Surroundings::reach_mm() or more away. A surface voxel is its own feature, therefore its word is free and
-// holds its label. After the words of a brick with surface voxels come their mask and their neighborhoods.
-// One read of the table and one of a line of words and of neighborhoods therefore give the label and the
-// shape of the isosurface.
+// holds its label and the edges to neighbors of another label. After the words of a brick with surface voxels
+// come their mask and their neighborhoods. One read of the table and one of a line of words and of
+// neighborhoods therefore give the label and the shape of the isosurface.
 //
 // The bound is found as follows. A box of voxels contains all points whose nearest voxel is one of its
 // voxels, and all isosurface points within half a voxel of its surface voxels. The distance between boxes is
@@ -95,6 +95,37 @@ class FeatureTransform {
   double step_mm_ = 0, reach_mm_ = 0;
 };
 
+/// What the transform stores of a voxel: the entry of its brick, and its word.
+class StoredFeature {
+ public:
+  /// `word` is 0 if the brick is far.
+  constexpr StoredFeature(Brick brick, std::uint16_t word) : brick_(brick), word_(word) {}
+
+  constexpr Brick brick() const { return brick_; }
+  constexpr bool is_surface() const { return (word_ & kSurface) != 0; }
+  /// The label of a surface voxel, or kLabelTooLarge if it does not fit in the word.
+  constexpr LabelIndex label() const { return word_ & kLabelTooLarge; }
+  static constexpr LabelIndex kLabelTooLarge = 0x1ff;
+  /// The offset from the voxel to its feature; none if the word does not store it.
+  constexpr std::optional<Voxel> offset() const {
+    if (is_surface()) return Voxel{};
+    const FeatureOffset offset(word_);
+    return offset.is_beyond() ? std::nullopt : std::optional(offset.offset());
+  }
+
+  /// The word of a surface voxel: the top bit, its changing edges, and its label.
+  static constexpr std::uint16_t kSurface = 0x8000;
+  static constexpr int kEdgesAt = 9;
+  static constexpr std::uint16_t word_of_surface(const Neighborhood& around, LabelIndex label) {
+    return static_cast<std::uint16_t>(kSurface | around.changing_edges() << kEdgesAt |
+                                      (label < kLabelTooLarge ? label : kLabelTooLarge));
+  }
+
+ private:
+  Brick brick_;
+  std::uint16_t word_;
+};
+
 /// Queries a transform, to which it keeps a reference. `Reads` receives each word that is read.
 template <class Reads>
 class Features {
@@ -135,43 +166,27 @@ class Features {
     visit(u, squared_reach, [&](const Voxel&, double) { squared_reach = kEnd; });
     return squared_reach == kEnd;
   }
-  /// The offset from `v`, which lies in `brick`, to its feature; none if the words do not store it.
-  std::optional<Voxel> offset_to_nearest(Brick brick, const Voxel& v) const {
-    if (!brick.is_near()) return std::nullopt;
-    const std::uint16_t word = word_at(brick, place_in_brick(v));
-    if ((word & kSurface) != 0) return Voxel{};
-    const FeatureOffset offset(word);
-    return offset.is_beyond() ? std::nullopt : std::optional(offset.offset());
+  /// `v` must lie in `brick`.
+  StoredFeature stored(Brick brick, const Voxel& v) const {
+    return {brick, brick.is_near() ? word_at(brick, place_in_brick(v)) : std::uint16_t{0}};
   }
-  /// The features of eight voxels; none if the words do not store all of them. Prefetches what
-  /// neighborhoods() reads of these features.
-  std::optional<EightVoxels> nearest(const EightVoxels& voxels) const {
-    const auto bricks = voxels.bricks(bricks_), places = voxels.places_in_bricks();
-    EightVoxels::Ints words;
-    for (unsigned c = 0; c < EightVoxels::kNum; ++c) {
-      const Brick at = brick(bricks[c]);
-      if (!at.is_near()) return std::nullopt;
-      const std::uint16_t word = word_at(at, places[c]);
-      if (FeatureOffset(word).is_beyond()) return std::nullopt;
-      words[c] = word;
-    }
-    const EightVoxels::Ints is_elsewhere = (words & kSurface) == 0;
-    const EightVoxels features{voxels.i + (is_elsewhere & FeatureOffset::along<0>(words)),
-                               voxels.j + (is_elsewhere & FeatureOffset::along<1>(words)),
-                               voxels.k + (is_elsewhere & FeatureOffset::along<2>(words))};
-    for (const std::uint32_t index : features.bricks(bricks_)) {
-      __builtin_prefetch(bytes() + byte_of_mask(Brick(words_[index])));
-    }
-    return features;
+  /// The features of the corners of the box from `low` to `high`, which are at most one voxel apart along
+  /// each axis; none if the words do not store all of them.
+  std::optional<EightVoxels> nearest_to_corners(const Voxel& low, const Voxel& high) const {
+    const std::optional<EightVoxels::Ints> stored = words_of_corners(low, high);
+    if (!stored) return std::nullopt;
+    const EightVoxels::Ints words = *stored, is_elsewhere = (words & StoredFeature::kSurface) == 0;
+    const EightVoxels corners = EightVoxels::corners(low, high);
+    return EightVoxels{corners.i + (is_elsewhere & FeatureOffset::along<0>(words)),
+                       corners.j + (is_elsewhere & FeatureOffset::along<1>(words)),
+                       corners.k + (is_elsewhere & FeatureOffset::along<2>(words))};
   }
-  EightVoxels::Numbers neighborhoods(const EightVoxels& surface_voxels) const {
+  /// The edges of each of the surface voxels that change the label, as in Neighborhood::changing_edges().
+  EightVoxels::Ints changing_edges(const EightVoxels& surface_voxels) const {
     const auto bricks = surface_voxels.bricks(bricks_), places = surface_voxels.places_in_bricks();
-    EightVoxels::Numbers bits;
-    for (unsigned c = 0; c < EightVoxels::kNum; ++c) {
-      const Brick at = brick(bricks[c]);
-      bits[c] = neighborhood_at(at, surface_mask(at), places[c]).bits();
-    }
-    return bits;
+    EightVoxels::Ints words;
+    for (unsigned c = 0; c < EightVoxels::kNum; ++c) words[c] = word_at(brick(bricks[c]), places[c]);
+    return words >> StoredFeature::kEdgesAt & ((1 << kNumEdges) - 1);
   }
   /// A lower bound, mm, of the distance between the isosurface and any point whose nearest voxel lies in the
   /// far `brick`.
@@ -179,15 +194,6 @@ class Features {
   /// A lower bound, mm, of the distance by centers between a voxel of a near brick and any surface voxel, if
   /// the words do not store the voxel's feature.
   double reach_mm() const { return transform_->reach_mm(); }
-
-  /// The label of v, which lies in `brick`, if v is a surface voxel; kLabelTooLarge if the label does not fit
-  /// in a word.
-  std::optional<LabelIndex> label_if_surface(Brick brick, const Voxel& v) const {
-    if (brick.label() != Brick::kMixed) return std::nullopt;
-    const std::uint16_t word = word_at(brick, place_in_brick(v));
-    return (word & kSurface) != 0 ? std::optional<LabelIndex>(word & kLabelTooLarge) : std::nullopt;
-  }
-  static constexpr LabelIndex kLabelTooLarge = 0x7fff;
 
   /// None if `v` is not a surface voxel.
   std::optional<Neighborhood> neighborhood_if_surface(const Voxel& v) const {
@@ -212,7 +218,6 @@ class Features {
 
  private:
   friend class FeatureWriter;
-  static constexpr std::uint16_t kSurface = 0x8000;  // the other bits are the label, or kLabelTooLarge
   static constexpr std::size_t kLineBytes = 64, kBytesOfWords = 64 * sizeof(std::uint16_t);
 
   const std::byte* bytes() const { return reinterpret_cast<const std::byte*>(words_); }
@@ -229,6 +234,40 @@ class Features {
   }
   std::uint16_t word_at(Brick brick, unsigned place) const {
     return read<std::uint16_t>(byte_of_word(brick, place));
+  }
+  // The words of two corners along x are adjacent unless a brick ends between them.
+  std::optional<EightVoxels::Ints> words_of_corners(const Voxel& low, const Voxel& high) const {
+    const std::size_t first = bricks_.index_of_voxel(low),
+                      up_y = bricks_.index_of_voxel({low.i, high.j, low.k}) - first,
+                      up_z = bricks_.index_of_voxel({low.i, low.j, high.k}) - first;
+    const unsigned place = place_in_brick(low), place_y = place_in_brick({low.i, high.j, low.k}) - place,
+                   place_z = place_in_brick({low.i, low.j, high.k}) - place;
+    std::array<std::uint32_t, 4> pairs;
+    const auto read_pairs = [&](const auto& pair) {
+      for (unsigned c = 0; c < pairs.size(); ++c)
+        pairs[c] = pair(first + ((c & 1) != 0 ? up_y : 0) + ((c & 2) != 0 ? up_z : 0),
+                        place + ((c & 1) != 0 ? place_y : 0) + ((c & 2) != 0 ? place_z : 0));
+    };
+    const auto word = [&](std::size_t brick_index, unsigned at) -> std::uint32_t {
+      const Brick of_word = brick(brick_index);
+      return of_word.is_near() ? word_at(of_word, at) : 0;
+    };
+    if ((low.i & 3) != 3 && low.i != high.i) {
+      read_pairs([&](std::size_t brick_index, unsigned at) -> std::uint32_t {
+        const Brick of_words = brick(brick_index);
+        return of_words.is_near() ? read<std::uint32_t>(byte_of_word(of_words, at)) : 0;
+      });
+    } else {
+      const auto right = static_cast<unsigned>(high.i - low.i);
+      read_pairs([&](std::size_t brick_index, unsigned at) {
+        return word(brick_index, at) | word(brick_index + right, at - 3 * right) << 16;
+      });
+    }
+    using Words [[gnu::vector_size(sizeof pairs)]] = std::uint16_t;
+    const auto words = std::bit_cast<Words>(pairs);
+    const auto is_beyond = std::bit_cast<std::array<std::uint64_t, 2>>(words == 0);
+    if ((is_beyond[0] | is_beyond[1]) != 0) return std::nullopt;
+    return __builtin_convertvector(words, EightVoxels::Ints);
   }
   static std::size_t byte_of_mask(Brick brick) { return brick.line() * kLineBytes + kBytesOfWords; }
   std::uint64_t surface_mask(Brick brick) const { return read<std::uint64_t>(byte_of_mask(brick)); }

@@ -39,12 +39,13 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
 // The neighborhood of v gives the corners of u's block that differ from v. If there are two labels, their
 // weights decide. A label of the block then has to be read only if the other label wins.
 template <class Reads>
-LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, Brick brick,
-                                                LabelIndex own) const {
-  const Neighborhood around = features_.neighborhood(brick, v);
+LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v,
+                                                const StoredFeature& of_v) const {
+  const LabelIndex own = of_v.label();
+  const Neighborhood around = features_.neighborhood(of_v.brick(), v);
   const Voxel block = block_of(u);
   const CornerMask others = around.differing_corners(block.i - v.i, block.j - v.j, block.k - v.k);
-  if (own == Features<Reads>::kLabelTooLarge || (others != 0 && !around.has_two_labels()))
+  if (own == StoredFeature::kLabelTooLarge || (others != 0 && !around.has_two_labels()))
     return label_by_block(u);
   if (others == 0) return own;
   const Point f = u - center(block);
@@ -68,11 +69,20 @@ LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
 // The block of u may still have several labels, but only if a voxel next to v is a surface voxel. The feature
 // of v may be another voxel where voxels are long, but it is then at most one diagonal away.
 template <class Reads>
-LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
-  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, const StoredFeature& of_v) const {
+  const std::optional<Voxel> offset = of_v.offset();
   const double diagonal_mm = 2 * half_diagonal_mm_ * kAboveRounding;
   if (offset && length_mm(center(*offset)) <= diagonal_mm) return label_by_block(u);
-  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
+  return of_v.brick().label() == Brick::kMixed ? grid_.label_inside(v) : of_v.brick().label();
+}
+
+template <class Reads>
+LabelAndBound Oracle<Reads>::label_and_bound(const Point& p, double radius) const {
+  const Point u = to_voxels(p);
+  if (!is_inside(u)) return {kBackground, std::max(bound_from_outside(u, radius), 0.0)};
+  const Voxel v = nearest_voxel(u);
+  const StoredFeature of_v = features_.stored(features_.brick_of(v), v);
+  return {label_by_feature(u, v, of_v), std::max(bound_by_feature(u, v, of_v, radius), 0.0)};
 }
 
 template <class Reads>
@@ -90,8 +100,7 @@ double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const 
 template <class Reads>
 double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
   const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
-  const double bound =
-      std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside)), radius));
+  const double bound = std::max(0.0, bound_by_voxel(inside, nearest_voxel(clamped_to_grid(inside)), radius));
   return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
 }
 
@@ -100,9 +109,10 @@ double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
 // voxel's center is nearer to that of v than that of v's feature. Where interfaces are smoothed, the two
 // bounds grow by half a voxel and by half a diagonal.
 template <class Reads>
-double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double radius) const {
-  const Brick brick = features_.brick_of(v);
-  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, const StoredFeature& of_v,
+                                       double radius) const {
+  const Brick brick = of_v.brick();
+  const std::optional<Voxel> offset = of_v.offset();
   const double from_center = length_mm(u - center(v)) + to_surface_voxel_mm_;
   if (offset) return length_mm(center(*offset)) - from_center;
   const double bound = brick.is_near() ? features_.reach_mm() - from_center
@@ -117,21 +127,27 @@ template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const Featur
                                  std::shared_ptr<const VoxelWeights>, const NoReads&);
 template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
                                       std::shared_ptr<const VoxelWeights>, const CountedReads&);
-template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
-                                                           LabelIndex) const;
-template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
-                                                                LabelIndex) const;
+template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&,
+                                                           const StoredFeature&) const;
+template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&,
+                                                                const StoredFeature&) const;
 template LabelIndex Oracle<NoReads>::label_by_block(const Point&) const;
 template LabelIndex Oracle<CountedReads>::label_by_block(const Point&) const;
-template LabelIndex Oracle<NoReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
-template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
+template LabelIndex Oracle<NoReads>::label_off_surface(const Point&, const Voxel&,
+                                                       const StoredFeature&) const;
+template LabelAndBound Oracle<NoReads>::label_and_bound(const Point&, double) const;
+template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&,
+                                                            const StoredFeature&) const;
+template LabelAndBound Oracle<CountedReads>::label_and_bound(const Point&, double) const;
 template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
 template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
 template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
 template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
 template double Oracle<NoReads>::bound_from_outside(const Point&, double) const;
 template double Oracle<CountedReads>::bound_from_outside(const Point&, double) const;
-template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&, double) const;
-template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&, double) const;
+template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&, const StoredFeature&,
+                                                  double) const;
+template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&, const StoredFeature&,
+                                                       double) const;
 
 }  // namespace podm

@@ -54,6 +54,12 @@ struct Cover {
   }
 };
 
+/// The label at a point, and a lower bound of its distance from the isosurface, mm.
+struct LabelAndBound {
+  LabelIndex label;
+  double bound;
+};
+
 /// `Reads` receives every read of the image and of its transform.
 template <class Reads>
 class Oracle {
@@ -67,6 +73,9 @@ class Oracle {
 
   /// The label of greatest trilinear weight. Away from any label change this is a single look-up.
   LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
+
+  /// label_at() and distance_lower_bound() of one point, for less than both.
+  LabelAndBound label_and_bound(const Point& p, double radius) const;
 
   /// Prefetches the cache lines that the queries about p read first.
   void prefetch(const Point& p) const {
@@ -135,11 +144,14 @@ class Oracle {
     return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
   }
   LabelIndex label_at_voxels(const Point& u) const;
-  /// `v`, the voxel nearest to u, is a surface voxel of `brick`.
-  LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, Brick brick, LabelIndex own) const;
+  // The next functions ask about u, whose nearest voxel is v, with what is stored of v.
+  LabelIndex label_by_feature(const Point& u, const Voxel& v, const StoredFeature& of_v) const;
+  /// `v` must be a surface voxel.
+  LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, const StoredFeature& of_v) const;
+  /// `v` must not be a surface voxel.
+  LabelIndex label_off_surface(const Point& u, const Voxel& v, const StoredFeature& of_v) const;
+  double bound_by_feature(const Point& u, const Voxel& v, const StoredFeature& of_v, double radius) const;
   LabelIndex label_by_block(const Point& u) const;
-  /// `v`, the voxel nearest to u, is not a surface voxel.
-  LabelIndex label_off_surface(const Point& u, const Voxel& v, Brick brick) const;
   /// Returns ask(weights of the block's corners).
   template <class Ask>
   auto with_weights(const Voxel& block, const Ask& ask) const {
@@ -153,10 +165,12 @@ class Oracle {
   /// May be negative. Where the transform stores no feature, surface voxels are searched for only if that can
   /// decide if the distance exceeds `radius`.
   double clearance(const Point& u, double radius) const {
-    return is_inside(u) ? bound_by_feature(u, nearest_voxel(u), radius) : bound_from_outside(u, radius);
+    return is_inside(u) ? bound_by_voxel(u, nearest_voxel(u), radius) : bound_from_outside(u, radius);
   }
   double bound_from_outside(const Point& u, double radius) const;
-  double bound_by_feature(const Point& u, const Voxel& v, double radius) const;
+  double bound_by_voxel(const Point& u, const Voxel& v, double radius) const {
+    return bound_by_feature(u, v, features_.stored(features_.brick_of(v), v), radius);
+  }
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
@@ -203,9 +217,17 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   if (!is_inside(u)) return kBackground;
   const Voxel v = nearest_voxel(u);
   const Brick brick = features_.brick_of(v);
-  if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
+  // Where all voxels of a brick have one label, that is the label of u unless interfaces are smoothed.
+  const bool needs_word = brick.label() == Brick::kMixed || weights_ != nullptr;
+  return label_by_feature(u, v, needs_word ? features_.stored(brick, v) : StoredFeature(brick, 0));
+}
+
+template <class Reads>
+inline LabelIndex Oracle<Reads>::label_by_feature(const Point& u, const Voxel& v,
+                                                  const StoredFeature& of_v) const {
+  if (of_v.is_surface()) return label_by_neighborhood(u, v, of_v);
   if (weights_ != nullptr) [[unlikely]]
-    return label_off_surface(u, v, brick);
+    return label_off_surface(u, v, of_v);
   // The lemma leaves one case in which u has another label than v, a voxel off the surface: a tie at the
   // block's center.
   constexpr double kNotCenter = 1.5 - 1e-9;
@@ -213,7 +235,7 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {
     return label_by_block(u);
   }
-  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
+  return of_v.brick().label() == Brick::kMixed ? grid_.label_inside(v) : of_v.brick().label();
 }
 
 }  // namespace podm

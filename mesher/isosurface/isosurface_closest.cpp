@@ -34,13 +34,7 @@ constexpr auto kBalances = []<std::size_t... mask>(std::index_sequence<mask...>)
 }
 (std::make_index_sequence<kAllCorners + 1>());
 
-// The edges from a voxel to its six neighbors.
-constexpr unsigned kNumEdges = 6;
-constexpr std::array<unsigned, kNumEdges> kNeighbors{
-    Neighborhood::position(-1, 0, 0), Neighborhood::position(1, 0, 0),  Neighborhood::position(0, -1, 0),
-    Neighborhood::position(0, 1, 0),  Neighborhood::position(0, 0, -1), Neighborhood::position(0, 0, 1)};
-constexpr std::size_t axis_of(unsigned edge) { return edge >> 1; }
-constexpr double half_of(unsigned edge) { return (edge & 1) != 0 ? 0.5 : -0.5; }
+constexpr double half_of(unsigned edge) { return leads_up(edge) ? 0.5 : -0.5; }
 
 struct EdgeOfEight {
   unsigned voxel, edge;
@@ -48,13 +42,15 @@ struct EdgeOfEight {
 
 // The edge to a neighbor of another label whose midpoint is nearest to `from`, which is in voxels from the
 // first of the eight. Single precision suffices to compare the distances. The last bits of each squared
-// distance are therefore free to hold the number of its edge and voxel.
-EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Numbers& neighborhoods,
+// distance are therefore free to hold the number of its edge and voxel. The top bit is set for edges that
+// change no label.
+EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Ints& changing_edges,
                          const Vector& from, const Vector& spacing) {
   using Ints = EightVoxels::Ints;
+  using Keys [[gnu::vector_size(sizeof(Ints))]] = std::uint32_t;
   using Floats [[gnu::vector_size(sizeof(Ints))]] = float;
-  constexpr std::int32_t kMostIds = 64, kNone = std::numeric_limits<std::int32_t>::max();
-  constexpr Ints kFirstIds{0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr std::uint32_t kMostIds = 64, kTopBit = 0x80000000;
+  constexpr Keys kFirstIds{0, 1, 2, 3, 4, 5, 6, 7};
   const std::array<float, 3> side{static_cast<float>(spacing.x), static_cast<float>(spacing.y),
                                   static_cast<float>(spacing.z)};
   const std::array<float, 3> start{static_cast<float>(from.x), static_cast<float>(from.y),
@@ -63,23 +59,22 @@ EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Numbers& 
     return (__builtin_convertvector(at - at[0], Floats) - start[a]) * side[a];
   };
   const std::array<Floats, 3> d{along(voxels.i, 0), along(voxels.j, 1), along(voxels.k, 2)};
-  const auto differing = std::bit_cast<Ints>(neighborhoods);
+  const auto unchanging = std::bit_cast<Keys>(~changing_edges);
   const Floats squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  Ints least = Ints{} + kNone;
+  Keys least = Keys{} + ~0u;
   for (unsigned edge = 0; edge < kNumEdges; ++edge) {
     const std::size_t axis = axis_of(edge);
     const float half = static_cast<float>(half_of(edge)) * side[axis];
     const Floats to_midpoint = squared + half * (2 * d[axis] + half);
     const Floats not_negative = to_midpoint > 0 ? to_midpoint : Floats{};
-    const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightVoxels::kNum);
-    const Ints keys = (reinterpret_cast<Ints>(not_negative) & -kMostIds) | ids;
-    const Ints same = ((differing >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits set
-    const Ints candidates = keys | (same & kNone);
+    const Keys ids = kFirstIds + edge * EightVoxels::kNum;
+    const Keys keys = (std::bit_cast<Keys>(not_negative) & ~(kMostIds - 1)) | ids;
+    const Keys candidates = keys | (unchanging << (31 - static_cast<int>(edge)) & kTopBit);
     least = candidates < least ? candidates : least;
   }
-  std::int32_t first = least[0];
+  std::uint32_t first = least[0];
   for (unsigned c = 1; c < EightVoxels::kNum; ++c) first = std::min(first, least[c]);
-  const auto id = static_cast<unsigned>(first % kMostIds);
+  const unsigned id = first % kMostIds;
   return {id % EightVoxels::kNum, id / EightVoxels::kNum};
 }
 
@@ -190,7 +185,7 @@ class Oracle<Reads>::Sheet {
 // The nearest of the midpoints beside the given surface voxels.
 template <class Reads>
 auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const -> Nearest {
-  const auto [voxel, edge] = nearest_edge(surface_voxels, features_.neighborhoods(surface_voxels),
+  const auto [voxel, edge] = nearest_edge(surface_voxels, features_.changing_edges(surface_voxels),
                                           u - center(surface_voxels[0]), spacing_);
   Nearest best{surface_voxels[voxel]};
   const std::size_t axis = axis_of(edge);
@@ -222,7 +217,7 @@ auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<Eight
   const Voxel low = block_of(inside);
   const Voxel high{std::min(low.i + 1, grid_.num_x() - 1), std::min(low.j + 1, grid_.num_y() - 1),
                    std::min(low.k + 1, grid_.num_z() - 1)};
-  return features_.nearest(EightVoxels::corners(low, high));
+  return features_.nearest_to_corners(low, high);
 }
 
 // Moves from midpoint to midpoint. Each is the nearest to u beside the features around the previous one.

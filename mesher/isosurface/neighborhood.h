@@ -1,9 +1,16 @@
 // The labels around a surface voxel, compared with its own.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace podm {
+
+/// The edges from a voxel to its six neighbors: edge 2 a leads down the axis a, and edge 2 a + 1 up.
+inline constexpr unsigned kNumEdges = 6;
+constexpr std::size_t axis_of(unsigned edge) { return edge >> 1; }
+constexpr bool leads_up(unsigned edge) { return (edge & 1) != 0; }
 
 /// The set of the voxels around a surface voxel that have another label than its own.
 class Neighborhood {
@@ -21,6 +28,15 @@ class Neighborhood {
   constexpr unsigned differing_corners(int i, int j, int k) const {
     const std::uint32_t b = bits_ >> position(i, j, k);
     return (b & 0x3) | (b >> 1 & 0xc) | (b >> 5 & 0x30) | (b >> 6 & 0xc0);
+  }
+  /// The edges that change the label, one bit per edge.
+  constexpr unsigned changing_edges() const {
+    constexpr std::array<unsigned, kNumEdges> kNeighbors{position(-1, 0, 0), position(1, 0, 0),
+                                                         position(0, -1, 0), position(0, 1, 0),
+                                                         position(0, 0, -1), position(0, 0, 1)};
+    unsigned edges = 0;
+    for (unsigned e = 0; e < kNumEdges; ++e) edges |= (bits_ >> kNeighbors[e] & 1) << e;
+    return edges;
   }
   /// True if all voxels that differ have one label.
   constexpr bool has_two_labels() const { return (bits_ >> 30 & 1) != 0; }

@@ -40,6 +40,17 @@ LabelIndex RulesOn<Cells>::label_of(CellId c) const {
   return label;
 }
 
+// Both for the circumcenter of the cell.
+template <class Cells>
+LabelAndBound RulesOn<Cells>::label_and_bound(CellId c, double radius) const {
+  const Point& center = mesh_.cell(c).center;
+  const LabelIndex known = load(mesh_.label(c), std::memory_order_relaxed);
+  if (known != kUnknownLabel) return {known, distance_lower_bound(center, radius)};
+  const LabelAndBound found = ask([&](const auto& oracle) { return oracle.label_and_bound(center, radius); });
+  store(mesh_.label(c), found.label, std::memory_order_relaxed);
+  return found;
+}
+
 template <class Cells>
 double RulesOn<Cells>::distance_lower_bound(const Point& p, double radius) const {
   return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
@@ -58,16 +69,17 @@ template <class Cells>
 Examination RulesOn<Cells>::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.center;
+  const double squared_radius = squared_distance(center, mesh_.point(cell.vertices[3]));
+  const double radius = std::sqrt(squared_radius);
+  const auto [label, bound] = label_and_bound(c, radius);
   Examination t{.cell = c,
                 .center = center,
-                .squared_radius = squared_distance(center, mesh_.point(cell.vertices[3])),
-                .label = label_of(c),
-                .isosurface_distance = 0,
+                .squared_radius = squared_radius,
+                .label = label,
+                .isosurface_distance = bound,
                 .is_distance_proven = true,
                 .nearest = {},
                 .is_covered = false};
-  const double radius = std::sqrt(t.squared_radius);
-  t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
   const Cover cover = covered_by(cell);
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });

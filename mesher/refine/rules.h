@@ -137,6 +137,7 @@ class RulesOn {
       return question(*counted_);
     return question(isosurface_);
   }
+  LabelAndBound label_and_bound(CellId c, double radius) const;
   double distance_lower_bound(const Point& p, double radius) const;
   Cover covered_by(const Cell& cell) const;
   bool is_covered_beside(CellId c, const Point& z) const;

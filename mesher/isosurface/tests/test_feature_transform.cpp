@@ -50,7 +50,7 @@ void expect_equals_brute_force(const LabelImage& image) {
   for (std::size_t v = 0; v < image.num_voxels(); ++v) {
     const Voxel at = position(image, v), nearest = *features.nearest(center(at), 1e9);
     const std::size_t feature = image.index(nearest.i, nearest.j, nearest.k);
-    const auto offset = features.offset_to_nearest(features.brick_of(at), at);
+    const auto offset = features.stored(features.brick_of(at), at).offset();
     if (offset) {
       const std::size_t found = image.index(at.i + offset->i, at.j + offset->j, at.k + offset->k);
       ASSERT_TRUE(std::binary_search(surface.begin(), surface.end(), found));
