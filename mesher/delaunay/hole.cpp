@@ -192,18 +192,17 @@ HoleFiller::Local HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) 
   // Most cells of the hole have the added vertex: for all facets without it, it is tried first.
   unsigned best = added_ != kNoApex && is_inner(facet, added_) ? added_ : nearest_apex(facet);
   if (best == kNoApex) throw InternalError("no vertex on the inner side of a hole's facet");
-  const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
   // The guess is now proved, or replaced by a vertex inside its sphere. Spheres through the facet are nested
   // on its inner side, so each replacement shrinks the set of vertices inside. Therefore one pass over all
-  // candidates ends without a replacement.
+  // candidates ends with the apex.
+  const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
   Circumsphere sphere = circumsphere(a, b, c, points_[best], mesh.extent());
-  for (unsigned checked = 0, i = 0; checked < points_.size(); ++checked, i = (i + 1) % points_.size()) {
+  for (unsigned i = 0; i < points_.size(); ++i) {
     const Side side = side_of(sphere, points_[i]);
     if (side == Side::kOutside || i == best || !is_inner(facet, i)) continue;
     if (side == Side::kUndecided && !in_circumsphere(a, b, c, points_[best], points_[i])) continue;
     best = i;
     sphere = circumsphere(a, b, c, points_[best], mesh.extent());
-    checked = 0;
   }
   return static_cast<Local>(best);
 }

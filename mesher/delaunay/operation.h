@@ -74,6 +74,17 @@ class Operation {
       for (const VertexId v : vertices) visit(v, region_.cells[i]);
     }
   }
+  /// Calls visit(VertexId) for the vertices of the region whose squared distance from p, the point of the
+  /// last planned insertion, is below `squared_reach`, mm^2. A vertex farther away may be visited too, and
+  /// some are visited more than once, if the region is no cavity or has very many vertices.
+  template <class Visit>
+  void for_each_region_vertex_near(double squared_reach, Visit&& visit) const {
+    if (is_star_) {
+      star_.for_each_vertex_within(squared_reach, visit);
+    } else {
+      for_each_region_vertex([&](VertexId v, CellId) { visit(v); });
+    }
+  }
   bool removes(VertexId v) const;
 
   /// Plans the move of v, a vertex of the cell `seed`, to places that are given later. v's ball becomes the
@@ -164,6 +175,7 @@ class Operation {
   std::size_t num_in_ball_ = 0;  // cells of the region around the vertex of a planned move
   std::vector<CellId> cavity_;   // scratch of plan_move_to: planned and stored cells
   bool is_cavity_ = false;       // the region is one point's cavity; its boundary was collected while digging
+  bool is_star_ = false;         // star_ is prepared to fill the cavity
   VertexId inserted_ = kNoVertex;
   std::vector<VertexId> removed_;
   Counters counters_;

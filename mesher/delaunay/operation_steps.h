@@ -106,6 +106,7 @@ inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
 template <class Locks>
 StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
+  is_star_ = false;
   if constexpr (HasHorizon<Locks>) {
     if (!locks_.may_insert(p, mesh_.cell(start))) return StepResult::kOutOfReach;
   }
@@ -132,12 +133,13 @@ StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
       }
     }
   }
+  is_star_ = star_.prepare(mesh_, region_, p);
   return StepResult::kDone;
 }
 
 template <class Locks>
 StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
-  is_cavity_ = false;
+  is_cavity_ = is_star_ = false;
   region_.removed.push_back(v);
   begin_around(mesh_.point(v));
   // The walk passes through cells around v that are already in the region, so it keeps its own list.
@@ -274,19 +276,18 @@ void Operation<Locks>::reserve_memory(std::size_t num_created) {
 
 template <class Locks>
 StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
-  const bool is_star = is_cavity_ && star_.prepare(mesh_, region_, p);
-  const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
+  const double nearest = is_star_ ? star_.squared_distance() : squared_distance_to_region(p);
   if (nearest < min_distance * min_distance) return StepResult::kTooNear;
-  if (!is_star) {
+  if (!is_star_) {
     if (!is_cavity_) collect_boundary();
     if (!hole_.plan(mesh_, region_, &p)) return StepResult::kTooNear;
   }
-  reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
+  reserve_memory(is_star_ ? star_.num_cells() : hole_.num_cells());
   count_gluing();
   inserted_ = pool_.take_vertex();
   place(mesh_.vertex(inserted_), p, kind);  // a worker with a stale entry may try its lock
   const std::size_t num_destroyed = region_.cells.size();
-  if (is_star) {
+  if (is_star_) {
     star_.fill(mesh_, pool_, region_, inserted_);
   } else {
     hole_.fill(mesh_, pool_, region_, inserted_);

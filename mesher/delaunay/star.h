@@ -19,6 +19,13 @@ class StarFiller {
   std::size_t num_cells() const { return num_facets_; }
   /// The squared distance from p to the nearest vertex of the prepared boundary, mm^2.
   double squared_distance() const { return squared_distance_; }
+  /// Calls visit(VertexId) once for each vertex of the prepared boundary whose squared distance from p is
+  /// below `squared_reach`, mm^2.
+  template <class Visit>
+  void for_each_vertex_within(double squared_reach, const Visit& visit) const {
+    for (unsigned i = 0; i < num_vertices_; ++i)
+      if (offsets_[i][3] < squared_reach) visit(ids_[i]);
+  }
   /// Replaces the region by the star of `apex`, whose point is p, and sets the spheres of the new cells.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex);
 
