@@ -175,10 +175,10 @@ class Mesh {
     store(cell.stamp_and_bits, static_cast<std::uint16_t>((cell.stamp_and_bits + 1) & kStampBits),
           std::memory_order_relaxed);
     cell.label = kUnknownLabel;
-    for (unsigned i = 0; i < 4; ++i) {
+    for_each_index([&](unsigned i) {
       step();
       store(cell.vertices[i], vertices[i], order_of(OrderedAccess::kRenew, std::memory_order_release));
-    }
+    });
   }
   /// Sets the sphere of a cell just renewed. Relaxed: peek_center() may return a part of the old center.
   void set_sphere(CellId c, const Circumsphere& sphere) {
@@ -194,7 +194,7 @@ class Mesh {
   void set_mirrors(CellId c, const std::array<FacetId, 4>& mirrors) {
     step();
     assert_may_write_mirrors(*this, c);
-    for (unsigned i = 0; i < 4; ++i) store(cells_[c].mirrors[i], mirrors[i], std::memory_order_relaxed);
+    for_each_index([&](unsigned i) { store(cells_[c].mirrors[i], mirrors[i], std::memory_order_relaxed); });
   }
   /// Moves the cell in the slot `from` to the slot `to`, which is the same slot or holds no cell, with new
   /// ids of its vertices and mirrors. No other worker may use either slot.
@@ -262,6 +262,11 @@ class Mesh {
   NodeIndex node_of_vertex(VertexId v) const { return vertex_ids_.node_of(v); }
 
  private:
+  // Calls visit(index) for the four local indices. Compilers keep a loop here, with its values in memory.
+  template <class Visit>
+  static void for_each_index(const Visit& visit) {
+    visit(0), visit(1), visit(2), visit(3);
+  }
   static std::array<std::uint32_t, 4> peek(const std::array<std::uint32_t, 4>& words) {
     const auto at = [&](std::size_t i) { return load(words[i], std::memory_order_relaxed); };
     return {at(0), at(1), at(2), at(3)};

@@ -1,6 +1,8 @@
 #include "delaunay/star.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
 
 namespace podm {
@@ -33,18 +35,33 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
       facet.local[i] = static_cast<std::uint16_t>(local);
     }
   }
-  facets_at_edges_.begin(num_vertices_);
+  at_edges_ = facets_at_edges_.begin(num_vertices_);
   return true;
 }
 
+// Copies the offsets of four facets at a time: the vectors of a vertex of each, transposed.
 void StarFiller::collect_offsets() {
+  using Four [[gnu::vector_size(sizeof offsets_[0])]] = double;
+  const auto load = [](const auto& from) { return std::bit_cast<Four>(from); };
   // The unused part of the last lanes repeats the last facet.
-  for (unsigned lane = 0; lane < (num_facets_ + Lanes::kSize - 1) / Lanes::kSize * Lanes::kSize; ++lane) {
-    Lanes& lanes = lanes_[lane / Lanes::kSize];
-    const Facet& facet = facets_[std::min(lane, num_facets_ - 1)];
+  const unsigned end = (num_facets_ + Lanes::kSize - 1) / Lanes::kSize * Lanes::kSize;
+  std::fill(facets_.begin() + num_facets_, facets_.begin() + end, facets_[num_facets_ - 1]);
+  for (unsigned first = 0; first < end; first += 4) {
+    auto* const rows = &lanes_[first / Lanes::kSize].offsets[0];
     for (unsigned i = 0; i < 3; ++i) {
-      for (unsigned k = 0; k < 4; ++k)
-        lanes.offsets[4 * i + k][lane % Lanes::kSize] = offsets_[facet.local[i]][k];
+      const auto of = [&](unsigned f) { return load(offsets_[facets_[first + f].local[i]]); };
+      const Four a = of(0), b = of(1), c = of(2), d = of(3);
+      const Four ab_xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                 ab_ys = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+                 cd_xz = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                 cd_ys = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+      const auto put = [&](unsigned k, const Four& row) {
+        std::memcpy(&rows[4 * i + k][first % Lanes::kSize], &row, sizeof row);
+      };
+      put(0, __builtin_shufflevector(ab_xz, cd_xz, 0, 1, 4, 5));
+      put(1, __builtin_shufflevector(ab_ys, cd_ys, 0, 1, 4, 5));
+      put(2, __builtin_shufflevector(ab_xz, cd_xz, 2, 3, 6, 7));
+      put(3, __builtin_shufflevector(ab_ys, cd_ys, 2, 3, 6, 7));
     }
   }
 }
@@ -87,6 +104,7 @@ void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
 void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   compute_spheres(mesh, mesh.point(apex));
   pool.replace(region.cells, num_facets_, region.created);
+  const FacetsAtEdges::Table at_edges = at_edges_;  // a copy stays in registers
   for (unsigned f = 0; f < num_facets_; ++f) {
     const Facet& facet = facets_[f];
     const CellId id = region.created[f];
@@ -95,15 +113,15 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const unsigned lane = f % Lanes::kSize;
     mesh.set_sphere(id, {{spheres[0][lane], spheres[1][lane], spheres[2][lane]}, spheres[3][lane]});
     mesh.set_mirror(facet.mirror, 4 * id + 3);
-    const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
-    facets_at_edges_.over(b, c) = 4 * id + 0;
-    facets_at_edges_.over(c, a) = 4 * id + 1;
-    facets_at_edges_.over(a, b) = 4 * id + 2;
+    const auto [a, b, c] = facet.local;
+    at_edges.over(b, c) = 4 * id + 0;
+    at_edges.over(c, a) = 4 * id + 1;
+    at_edges.over(a, b) = 4 * id + 2;
   }
   for (unsigned f = 0; f < num_facets_; ++f) {
-    const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
-    mesh.set_mirrors(region.created[f], {facets_at_edges_.over(c, b), facets_at_edges_.over(a, c),
-                                         facets_at_edges_.over(b, a), facets_[f].mirror});
+    const auto [a, b, c] = facets_[f].local;
+    mesh.set_mirrors(region.created[f],
+                     {at_edges.over(c, b), at_edges.over(a, c), at_edges.over(b, a), facets_[f].mirror});
   }
 }
 

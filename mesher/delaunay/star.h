@@ -56,6 +56,7 @@ class StarFiller {
   std::array<Facet, kMaxFacets> facets_;
   std::array<Lanes, kMaxFacets / Lanes::kSize> lanes_;
   FacetsAtEdges facets_at_edges_;
+  FacetsAtEdges::Table at_edges_;  // of the prepared boundary
 };
 
 }  // namespace podm

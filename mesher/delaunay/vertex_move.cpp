@@ -84,10 +84,10 @@ void VertexMove::glue_star() {
   relies_.assign(cells_.size(), 0);
   ids_.assign(cells_.size(), 0);  // fill() must not allocate memory
   number_star();
-  facets_at_edges_.begin(static_cast<unsigned>(star_vertices_.size()));
+  const FacetsAtEdges::Table at_edges = facets_at_edges_.begin(static_cast<unsigned>(star_vertices_.size()));
   for (CellId c = first_of_star(); c < end(); ++c) {
     const auto& v = star_facets_[c - first_of_star()];
-    for (unsigned i = 0; i < 3; ++i) facets_at_edges_.over(v[(i + 1) % 3], v[(i + 2) % 3]) = 4 * c + i;
+    for (unsigned i = 0; i < 3; ++i) at_edges.over(v[(i + 1) % 3], v[(i + 2) % 3]) = 4 * c + i;
     if (const FacetId beyond = cell(c).mirrors[3]; beyond != kNoFacet && is_planned(cell_of(beyond))) {
       reglued_.push_back({beyond, planned_mirror(beyond)});
       planned_mirror(beyond) = 4 * c + 3;
@@ -96,7 +96,7 @@ void VertexMove::glue_star() {
   for (CellId c = first_of_star(); c < end(); ++c) {
     const auto& v = star_facets_[c - first_of_star()];
     for (unsigned i = 0; i < 3; ++i)
-      planned_mirror(4 * c + i) = facets_at_edges_.over(v[(i + 2) % 3], v[(i + 1) % 3]);
+      planned_mirror(4 * c + i) = at_edges.over(v[(i + 2) % 3], v[(i + 1) % 3]);
   }
 }
 
