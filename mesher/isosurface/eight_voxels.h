@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "image/voxel.h"
 
@@ -29,9 +29,17 @@ struct EightVoxels {
   Voxel operator[](unsigned c) const { return {i[c], j[c], k[c]}; }
   Numbers bricks(const BrickGrid& grid) const {
     const auto& size = grid.size();
-    return std::bit_cast<Numbers>(((k >> 2) * size[1] + (j >> 2)) * size[0] + (i >> 2));
+    return numbers(((k >> 2) * size[1] + (j >> 2)) * size[0] + (i >> 2));
   }
-  Numbers places_in_bricks() const { return std::bit_cast<Numbers>(place_in_brick(i, j, k)); }
+  Numbers places_in_bricks() const { return numbers(place_in_brick(i, j, k)); }
+
+ private:
+  // Not std::bit_cast, for which compilers copy the register piece by piece.
+  static Numbers numbers(const Ints& from) {
+    Numbers to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
+  }
 };
 
 }  // namespace podm

@@ -242,30 +242,31 @@ class Features {
                       up_z = bricks_.index_of_voxel({low.i, low.j, high.k}) - first;
     const unsigned place = place_in_brick(low), place_y = place_in_brick({low.i, high.j, low.k}) - place,
                    place_z = place_in_brick({low.i, low.j, high.k}) - place;
-    std::array<std::uint32_t, 4> pairs;
+    using Pairs [[gnu::vector_size(16)]] = std::uint32_t;
+    using Words [[gnu::vector_size(16)]] = std::uint16_t;
+    using Halves [[gnu::vector_size(16)]] = std::uint64_t;
     const auto read_pairs = [&](const auto& pair) {
-      for (unsigned c = 0; c < pairs.size(); ++c)
-        pairs[c] = pair(first + ((c & 1) != 0 ? up_y : 0) + ((c & 2) != 0 ? up_z : 0),
-                        place + ((c & 1) != 0 ? place_y : 0) + ((c & 2) != 0 ? place_z : 0));
+      return Pairs{pair(first, place), pair(first + up_y, place + place_y),
+                   pair(first + up_z, place + place_z), pair(first + up_y + up_z, place + place_y + place_z)};
     };
     const auto word = [&](std::size_t brick_index, unsigned at) -> std::uint32_t {
       const Brick of_word = brick(brick_index);
       return of_word.is_near() ? word_at(of_word, at) : 0;
     };
+    Pairs pairs;
     if ((low.i & 3) != 3 && low.i != high.i) {
-      read_pairs([&](std::size_t brick_index, unsigned at) -> std::uint32_t {
+      pairs = read_pairs([&](std::size_t brick_index, unsigned at) -> std::uint32_t {
         const Brick of_words = brick(brick_index);
         return of_words.is_near() ? read<std::uint32_t>(byte_of_word(of_words, at)) : 0;
       });
     } else {
       const auto right = static_cast<unsigned>(high.i - low.i);
-      read_pairs([&](std::size_t brick_index, unsigned at) {
+      pairs = read_pairs([&](std::size_t brick_index, unsigned at) {
         return word(brick_index, at) | word(brick_index + right, at - 3 * right) << 16;
       });
     }
-    using Words [[gnu::vector_size(sizeof pairs)]] = std::uint16_t;
-    const auto words = std::bit_cast<Words>(pairs);
-    const auto is_beyond = std::bit_cast<std::array<std::uint64_t, 2>>(words == 0);
+    const auto words = reinterpret_cast<Words>(pairs);
+    const auto is_beyond = reinterpret_cast<Halves>(words == 0);
     if ((is_beyond[0] | is_beyond[1]) != 0) return std::nullopt;
     return __builtin_convertvector(words, EightVoxels::Ints);
   }

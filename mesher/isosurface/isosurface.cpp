@@ -10,9 +10,6 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// The number in [low, high] that is nearest to x, or low if x is not a number.
-double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
-
 // Exceeds 1 by more than the rounding errors.
 constexpr double kAboveRounding = 1 + 1e-9;
 
@@ -86,11 +83,6 @@ LabelAndBound Oracle<Reads>::label_and_bound(const Point& p, double radius) cons
 }
 
 template <class Reads>
-Point Oracle<Reads>::clamped_to_grid(const Point& u) const {
-  return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
-}
-
-template <class Reads>
 double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const {
   return std::max(clearance(to_voxels(p), radius), 0.0);
 }
@@ -139,8 +131,6 @@ template LabelAndBound Oracle<NoReads>::label_and_bound(const Point&, double) co
 template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&,
                                                             const StoredFeature&) const;
 template LabelAndBound Oracle<CountedReads>::label_and_bound(const Point&, double) const;
-template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
-template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
 template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
 template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
 template double Oracle<NoReads>::bound_from_outside(const Point&, double) const;

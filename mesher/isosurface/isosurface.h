@@ -159,8 +159,12 @@ class Oracle {
       return ask(weights_->block(block));
     return ask(UnitWeights{});
   }
+  /// The number in [low, high] that is nearest to x, or low if x is not a number.
+  static double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
   /// The nearest point of the box of all voxel centers; (0,0,0) for NaN.
-  Point clamped_to_grid(const Point& u) const;
+  Point clamped_to_grid(const Point& u) const {
+    return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
+  }
   bool is_empty() const { return features_.is_empty(); }
   /// May be negative. Where the transform stores no feature, surface voxels are searched for only if that can
   /// decide if the distance exceeds `radius`.

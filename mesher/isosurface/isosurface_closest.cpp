@@ -72,9 +72,11 @@ EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Ints& cha
     const Keys candidates = keys | (unchanging << (31 - static_cast<int>(edge)) & kTopBit);
     least = candidates < least ? candidates : least;
   }
-  std::uint32_t first = least[0];
-  for (unsigned c = 1; c < EightVoxels::kNum; ++c) first = std::min(first, least[c]);
-  const unsigned id = first % kMostIds;
+  const auto take_less = [&](const Keys& other) { least = other < least ? other : least; };
+  take_less(__builtin_shufflevector(least, least, 4, 5, 6, 7, 0, 1, 2, 3));
+  take_less(__builtin_shufflevector(least, least, 2, 3, 0, 1, 6, 7, 4, 5));
+  take_less(__builtin_shufflevector(least, least, 1, 0, 3, 2, 5, 4, 7, 6));
+  const unsigned id = least[0] % kMostIds;
   return {id % EightVoxels::kNum, id / EightVoxels::kNum};
 }
 
@@ -99,10 +101,19 @@ class Oracle<Reads>::Sheet {
   /// the voxel nearest to u.
   bool move_to(const Point& u) {
     const Voxel block = block_of(u);
-    if (lead_ != nullptr && block == block_) {
-      at_ = u - podm::center(block);
-      return true;
-    }
+    if (lead_ == nullptr || block != block_) return move_to_block(block, u);
+    at_ = u - podm::center(block);
+    return true;
+  }
+  const Voxel& center() const { return center_; }
+  double value() const { return lead().value(at_); }
+  Vector gradient() const { return lead().gradient(at_); }
+  double second_derivative(const Vector& d) const { return lead().second_derivative(at_, d); }
+
+ private:
+  const Trilinear& lead() const { return lead_ != nullptr ? *lead_ : lead_here_; }
+  // Rare cases are functions of their own. The usual ones then need few registers.
+  [[gnu::noinline]] bool move_to_block(const Voxel& block, const Point& u) {
     if (!is_beside_center(block) && !recenter(u, block)) return false;
     const CornerMask others =
         around_.differing_corners(block.i - center_.i, block.j - center_.j, block.k - center_.k);
@@ -113,20 +124,13 @@ class Oracle<Reads>::Sheet {
     lead_ = around_.has_two_labels() ? lead_of(others) : lead_of_many(block, others);
     return true;
   }
-  const Voxel& center() const { return center_; }
-  double value() const { return lead().value(at_); }
-  Vector gradient() const { return lead().gradient(at_); }
-  double second_derivative(const Vector& d) const { return lead().second_derivative(at_, d); }
-
- private:
-  const Trilinear& lead() const { return lead_ != nullptr ? *lead_ : lead_here_; }
   bool is_beside_center(const Voxel& block) const {
     const auto is_beside = [](int b, int c) {
       return static_cast<unsigned>(c) - static_cast<unsigned>(b) <= 1;
     };
     return is_beside(block.i, center_.i) && is_beside(block.j, center_.j) && is_beside(block.k, center_.k);
   }
-  bool recenter(const Point& u, const Voxel& block) {
+  [[gnu::noinline]] bool recenter(const Point& u, const Voxel& block) {
     if (!oracle_.is_inside(u)) return false;
     return recenter(nearest_voxel(u)) || (oracle_.weights_ != nullptr && recenter_on_corner(block));
   }
@@ -147,12 +151,14 @@ class Oracle<Reads>::Sheet {
   }
   // The lead in the current block if all other corners have one label.
   const Trilinear* lead_of(CornerMask others) {
-    if (oracle_.weights_ == nullptr) return &kBalances[others];
+    return oracle_.weights_ == nullptr ? &kBalances[others] : weighted_lead_of(others);
+  }
+  [[gnu::noinline]] const Trilinear* weighted_lead_of(CornerMask others) {
     lead_here_ = weight_difference(others, ~others & kAllCorners, oracle_.weights_->block(block_));
     return &lead_here_;
   }
   // Null if more than two labels meet in the block. The lead at `at_` is then `lead_here_`.
-  const Trilinear* lead_of_many(const Voxel& block, CornerMask others) {
+  [[gnu::noinline]] const Trilinear* lead_of_many(const Voxel& block, CornerMask others) {
     const BlockLabels labels = oracle_.grid_.block(block);
     CornerMask heaviest = 0;
     double greatest = -1;
