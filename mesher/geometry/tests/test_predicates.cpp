@@ -4,6 +4,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -58,6 +59,57 @@ TEST(Predicates, OrientationIsTheSignOfTheExactDeterminant) {
     const auto [a, b, c, d, p] = points.next(n % 2 == 0);
     const int sign = orientation(a, b, c, d);
     ASSERT_EQ(sign, CGAL::orientation(exact(a), exact(b), exact(c), exact(d)));
+    ++count[static_cast<std::size_t>(sign + 1)];
+  }
+  for (const int of_sign : count) EXPECT_GT(of_sign, 100);
+}
+
+// Four points with one coordinate in common. The other coordinates are random, or those of a lattice, where
+// three points are often collinear.
+class InPlaneOfAxes {
+ public:
+  std::array<Point, 4> next(double Point::*normal) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const double scale = std::exp2(random_() % 41) * 1e-6;
+    const bool is_lattice = random_() % 2 == 0;
+    const double height = random_() % 4 == 0 ? 0 : scale * uniform(random_);
+    std::array<Point, 4> points;
+    for (Point& p : points) {
+      for (double* x : {&p.x, &p.y, &p.z})
+        *x = scale * (is_lattice ? static_cast<double>(random_() % 4) : uniform(random_));
+      p.*normal = height == 0 && random_() % 2 == 0 ? -0.0 : height;
+    }
+    return points;
+  }
+
+ private:
+  std::mt19937_64 random_{29};
+};
+
+constexpr std::array kCoordinates{&Point::x, &Point::y, &Point::z};
+
+TEST(Predicates, OrientationInAPlaneOfTheAxesIsZeroInAnyOrder) {
+  InPlaneOfAxes points;
+  for (int n = 0; n < 3'000; ++n) {
+    const std::array<Point, 4> p = points.next(kCoordinates[n % 3u]);
+    std::array<std::size_t, 4> order{0, 1, 2, 3};
+    do {
+      ASSERT_EQ(orientation(p[order[0]], p[order[1]], p[order[2]], p[order[3]]), 0) << n;
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+}
+
+// One of the points leaves the plane by the last bit of its coordinate.
+TEST(Predicates, OrientationBesideAPlaneOfTheAxesIsTheExactSign) {
+  InPlaneOfAxes points;
+  std::array<int, 3> count{};
+  for (unsigned n = 0; n < 6'000; ++n) {
+    const auto normal = kCoordinates[n % 3];
+    std::array<Point, 4> p = points.next(normal);
+    double& height = p[n / 3 % 4].*normal;
+    height = std::nextafter(height, n % 2 == 0 ? -1e300 : 1e300);
+    const int sign = orientation(p[0], p[1], p[2], p[3]);
+    ASSERT_EQ(sign, CGAL::orientation(exact(p[0]), exact(p[1]), exact(p[2]), exact(p[3]))) << n;
     ++count[static_cast<std::size_t>(sign + 1)];
   }
   for (const int of_sign : count) EXPECT_GT(of_sign, 100);
