@@ -24,9 +24,12 @@ std::vector<LabelImage> noisy_images() {
       images.push_back(random_image(random, {12, 7, 5}, {0.6, 0.6, 1.3}, num_labels, coherence));
     }
   }
-  // The first image has more labels than the words have room for. The second has voxels six times as long as
-  // wide.
+  // The first image has more labels than the words have room for. Those of the second just have room or just
+  // have not. The third has voxels six times as long as wide.
   images.push_back(random_image(random, {60, 30, 25}, {1, 1, 1}, 40'000, 0.5));
+  images.push_back(random_image(random, {11, 9, 13}, {1, 1, 1.5}, 7, 0.8));
+  for (LabelIndex& label : images.back().voxels)
+    if (label != kBackground) label += StoredFeature::kLabelTooLarge - 4;
   images.push_back(random_image(random, {12, 11, 7}, {0.5, 0.5, 3}, 3, 0.9));
   images.push_back(random_image(random, {1, 6, 7}, {1, 2, 1}, 3, 0.5));
   images.push_back(random_image(random, {5, 1, 1}, {1, 1, 1}, 2, 0.0));
@@ -79,6 +82,61 @@ TEST(IsosurfaceLabel, EqualsTheDefinition) {
       if (expected.lead > 1e-12) {
         ASSERT_EQ(isosurface.label_at(p), expected.label);
       }
+    }
+  }
+}
+
+// A point anywhere, or one where answers change: at a center of a voxel or of a block, or on the border
+// between two voxels or of the grid.
+Point special_point(Random& random, const LabelImage& image) {
+  const auto along = [&](std::size_t a) {
+    const auto half_sides = static_cast<double>(random() % (2 * static_cast<unsigned>(image.size[a]) + 5));
+    return (0.5 * half_sides - 1.5) * image.spacing[a];
+  };
+  Point p = random_point(random, image, random() % 8 == 0 ? 30 : 1);
+  if (random() % 2 == 0) p.x = along(0);
+  if (random() % 2 == 0) p.y = along(1);
+  if (random() % 2 == 0) p.z = along(2);
+  return p;
+}
+
+TEST(LabelAndBound, AreThoseOfTheirOwnQueries) {
+  Random random(15);
+  int num_outside = 0, num_far = 0;
+  for (const auto& [image, weights] : noisy_samples()) {
+    const Isosurface isosurface(image, 1, weights);
+    for (int n = 0; n < 3000; ++n) {
+      const Point p = special_point(random, image);
+      const double radius = n % 10 == 0 ? 1e9 : uniform(random, 0, 6);
+      const LabelAndBound found = isosurface.label_and_bound(p, radius);
+      ASSERT_EQ(found.label, isosurface.label_at(p)) << p.x << ' ' << p.y << ' ' << p.z;
+      ASSERT_EQ(found.bound, isosurface.distance_lower_bound(p, radius)) << p.x << ' ' << p.y << ' ' << p.z;
+      const ReferenceLabel expected = reference_label(image, p, weights.get());
+      if (expected.lead > 1e-12) {
+        ASSERT_EQ(found.label, expected.label) << p.x << ' ' << p.y << ' ' << p.z;
+      }
+      num_outside += p.x < 0 || p.y < 0 || p.z < 0;
+      num_far += found.bound > radius;
+    }
+  }
+  EXPECT_GT(num_outside, 1000);
+  EXPECT_GT(num_far, 1000);
+}
+
+TEST(LabelAndBound, AreThoseOfTheirOwnQueriesFarFromTheIsosurface) {
+  Random random(16);
+  LabelImage image = empty_image({61, 47, 50}, {0.617, 0.617, 1.333});
+  for (int n = 0; n < 6; ++n) image.voxels[random() % image.num_voxels()] = 600;
+  for (const auto& weights : {std::shared_ptr<const VoxelWeights>(), random_weights(random, image)}) {
+    const Isosurface isosurface(image, 1, weights);
+    const std::vector<Point> surface = sample_isosurface(image, 2, weights.get());
+    for (int n = 0; n < 2000; ++n) {
+      const Point p = special_point(random, image);
+      const double radius = uniform(random, 0, 30);
+      const LabelAndBound found = isosurface.label_and_bound(p, radius);
+      ASSERT_EQ(found.label, isosurface.label_at(p));
+      ASSERT_EQ(found.bound, isosurface.distance_lower_bound(p, radius));
+      ASSERT_LE(found.bound, distance_to_nearest(surface, p) * (1 + 1e-12));
     }
   }
 }
@@ -161,6 +219,13 @@ TEST(IsosurfaceReads, AreCountedAndChangeNoAnswer) {
           reads([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
       EXPECT_GE(of_bound.transform, 1u);
       EXPECT_EQ(of_bound.image, 0u);
+      const Reads of_both = reads([&](const auto& oracle) {
+        const auto [label, bound] = oracle.label_and_bound(p, radius);
+        return std::pair(label, bound);
+      });
+      EXPECT_EQ(of_both.image, of_label.image);
+      const unsigned num_shared = of_label.transform > 0 ? 1 : 0;  // at least the entry of the table
+      EXPECT_LE(of_both.transform + num_shared, of_label.transform + of_bound.transform);
       const Reads of_crossing = reads([&](const auto& oracle) {
         const auto z = oracle.segment_intersection(p, q);
         return z ? std::array{z->x, z->y, z->z} : std::array<double, 3>{};
