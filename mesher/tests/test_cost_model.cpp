@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 
 #include "podm/mesh_image.h"
 #include "tests/images.h"
@@ -40,25 +41,52 @@ Sides sides_by_voxel(const LabelImage& image, int lag) {
   return sides;
 }
 
+// The spacing of the image must be 1: one distance is then a whole number of voxels along all axes.
+void expect_counts_sides(const LabelImage& image, const char* name) {
+  const CostModel model(image, 1);
+  double volume = 0;
+  for (const LabelIndex label : image.voxels) volume += label != kBackground;
+  const auto outside = [&](double delta) {
+    return model.background_cells({.delta_mm = delta}) * delta * delta;
+  };
+  const double unit = outside(1 / 1.6) / sides_by_voxel(image, 1).outside;
+  for (const int lag : {2, 3, 4, 6, 24}) {
+    const Sides sides = sides_by_voxel(image, lag);
+    EXPECT_NEAR(outside(lag / 1.6), unit * sides.outside, 1e-9 * unit * sides.outside) << name << ", " << lag;
+    const double delta = lag / 0.8, unbounded = std::numeric_limits<double>::infinity();
+    const double cells = CostModel::cells(volume, sides.labelled, unbounded, delta);
+    EXPECT_NEAR(model.cells({.delta_mm = delta}), cells, 1e-9 * cells) << name << ", " << lag;
+  }
+}
+
 TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
   for (const NamedImage& named : images()) {
     LabelImage image = named.make();
-    image.spacing = {1, 1, 1};  // one distance is then a whole number of voxels along all axes
-    const CostModel model(image, 1);
-    double volume = 0;
-    for (const LabelIndex label : image.voxels) volume += label != kBackground;
-    const auto outside = [&](double delta) {
-      return model.background_cells({.delta_mm = delta}) * delta * delta;
-    };
-    const double unit = outside(1 / 1.6) / sides_by_voxel(image, 1).outside;
-    for (const int lag : {2, 3, 4, 6, 24}) {
-      const Sides sides = sides_by_voxel(image, lag);
-      EXPECT_NEAR(outside(lag / 1.6), unit * sides.outside, 1e-9) << named.name << ", " << lag;
-      const double delta = lag / 0.8, unbounded = std::numeric_limits<double>::infinity();
-      const double cells = CostModel::cells(volume, sides.labelled, unbounded, delta);
-      EXPECT_NEAR(model.cells({.delta_mm = delta}), cells, 1e-9 * cells) << named.name << ", " << lag;
-    }
+    image.spacing = {1, 1, 1};
+    expect_counts_sides(image, named.name);
   }
+}
+
+// More voxels of a row have a side than a label can count.
+TEST(CostModel, CountsTheSidesOfInterfacesInLongRows) {
+  std::mt19937 random(5);
+  constexpr auto kMostLabels = static_cast<int>(kMaxLabels);
+  const auto long_rows = [&](int num_labels, const auto& label) {
+    return make_image({40'000, 2, 2}, {1, 1, 1}, num_labels - 1, label);
+  };
+  const auto any_of = [&](int first, int end) {
+    return first + static_cast<int>(random() % static_cast<unsigned>(end - first));
+  };
+  expect_counts_sides(long_rows(2, [](int, int, int) { return 1; }), "uniform");
+  expect_counts_sides(long_rows(2, [](int i, int, int) { return i % 30'000 < 20'000 ? 1 : 0; }), "stretches");
+  expect_counts_sides(long_rows(2, [&](int, int, int) { return any_of(0, 2); }), "random");
+  expect_counts_sides(long_rows(40, [](int i, int j, int k) { return 1 + (i + 5 * j + 7 * k) % 39; }),
+                      "every pair differs");
+  expect_counts_sides(long_rows(kMostLabels, [&](int, int, int) { return any_of(1, kMostLabels); }),
+                      "many labels");
+  expect_counts_sides(
+      long_rows(kMostLabels, [&](int, int, int) { return any_of(kMostLabels - 2, kMostLabels); }),
+      "the largest labels");
 }
 
 // A flat cell of a coarse mesh has almost no volume for its facets, or none.
