@@ -1,5 +1,5 @@
 // Refinement on the store: the mesh is Delaunay, the invariants behind termination hold, and no cell is left
-// that violates a rule.
+// that violates a rule. R3 does not apply to the facets that count as tested.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,15 +9,63 @@
 #include "algorithms/tests/broken_rule.h"
 #include "delaunay/tests/validity.h"
 #include "image/foreground.h"
+#include "image/working_frame.h"
 #include "podm/mesh_image.h"
 #include "refine/tests/invariants.h"
 #include "refine/virtual_box.h"
+#include "smoothing/smooth_interfaces.h"
 #include "tests/images.h"
 
 namespace podm::test {
 namespace {
 
 constexpr double kRadius = 2.5;
+
+// An image, and options that change its isosurface and the sizes of cells.
+struct Scene {
+  NamedImage image;
+  double smoothing_mm = 0;
+  bool has_size_grid = false;
+  friend std::ostream& operator<<(std::ostream& out, const Scene& x) { return out << x.image; }
+};
+
+std::vector<Scene> plain_scenes() {
+  std::vector<Scene> scenes;
+  for (const NamedImage& image : images()) scenes.push_back({image});
+  return scenes;
+}
+
+// Voxels ten times as long as wide, smoothed interfaces, sizes by place, and all of these.
+std::vector<Scene> special_scenes() {
+  const auto ball_of = [](std::array<int, 3> size, std::array<double, 3> spacing) {
+    return make_image(size, spacing, 2, [=](int i, int j, int k) {
+      const std::array<int, 3> at{i, j, k};
+      std::array<double, 3> mm;
+      for (std::size_t a = 0; a < 3; ++a) mm[a] = spacing[a] * (at[a] - (size[a] - 1) / 2.0);
+      return std::hypot(mm[0], mm[1], mm[2]) >= 9 ? 0 : mm[0] + mm[1] < 2 ? 1 : 2;
+    });
+  };
+  const auto cubes = [=] { return ball_of({24, 24, 24}, {1, 1, 1}); };
+  const auto long_voxels = [=] { return ball_of({42, 42, 6}, {0.5, 0.5, 5}); };
+  return {{.image = {"long_voxels", long_voxels}},
+          {.image = {"smoothed", cubes}, .smoothing_mm = 1.5},
+          {.image = {"sizes_by_place", cubes}, .has_size_grid = true},
+          {.image = {"all_three", long_voxels}, .smoothing_mm = 1.5, .has_size_grid = true}};
+}
+
+// Sizes that shrink along x, from kRadius at one end of the image to a half of it at the other.
+std::shared_ptr<const SizeGrid> shrinking_sizes(const LabelImage& image) {
+  std::vector<float> radii;
+  for (std::size_t v = 0; v < image.num_voxels(); ++v) {
+    const auto n = static_cast<std::size_t>(image.size[0]);
+    radii.push_back(
+        static_cast<float>(kRadius * (1 - 0.5 * static_cast<double>(v % n) / static_cast<double>(n))));
+  }
+  const ScalarGrid grid(image.size, inverse(voxels_to_working(image)),
+                        std::make_shared<const std::vector<float>>(std::move(radii)));
+  return std::make_shared<const SizeGrid>(SizeGrid::Image{grid}, std::vector<NearInterface>(), std::nullopt,
+                                          foreground_bounds(image));
+}
 
 // An algorithm and its workers.
 struct Method {
@@ -54,14 +102,21 @@ const std::vector<Method> kMethods{{Algorithm::kPodm, 1, 1},
                                    {Algorithm::kPodm, 64, 1, Contention::kLocal, Executor::kVirtual, true},
                                    {Algorithm::kPdrPodm, 6, 3, Contention::kLocal, Executor::kThreads, true}};
 
-class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
+std::vector<Method> few_methods() {
+  std::vector<Method> methods;
+  for (const bool is_perturbed : {false, true})
+    for (const int num_workers : {1, 2})
+      methods.push_back(
+          {Algorithm::kPodm, num_workers, 1, Contention::kLocal, Executor::kThreads, is_perturbed});
+  return methods;
+}
+
+class Refined : public testing::TestWithParam<std::tuple<Scene, Method>> {
  protected:
-  Refined()
-      : image_(std::get<NamedImage>(GetParam()).make()),
-        isosurface_(image_, 1),
-        delta_(default_delta_mm(image_, kRadius)),
-        sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
-    StopControl stop({}, {}, [](std::uint64_t) {});
+  Refined() : refinement_(refine({})) {}
+
+  Refinement refine(const Limits& limits) const {
+    StopControl stop(limits, {}, [](std::uint64_t) {});
     const Method& method = std::get<Method>(GetParam());
     const Problem problem{
         .isosurface = isosurface_,
@@ -70,14 +125,24 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
         .sizes = sizes_,
         .cell_capacity = 1 << 22,
         .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(12, 160)) : std::nullopt};
-    refinement_ = method(problem, stop);
+    return method(problem, stop);
   }
-  double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
+  double spacing() const {
+    return std::min(delta_, std::sqrt(sizes_.smallest_squared_radius() / (2 + std::sqrt(3.0))));
+  }
+  Parameters parameters() const {
+    return {.delta_mm = delta_,
+            .sizes = sizes_,
+            .clamp_box = clamp_box(foreground_bounds(image_), delta_),
+            .spacing_mm = spacing()};
+  }
 
-  LabelImage image_;
-  Isosurface isosurface_;
-  double delta_;
-  SizeField sizes_;
+  const Scene scene_ = std::get<Scene>(GetParam());
+  LabelImage image_ = scene_.image.make();
+  Isosurface isosurface_{image_, 1, weights_of(image_, scene_.smoothing_mm, 1)};
+  double delta_ = default_delta_mm(image_, kRadius);
+  SizeField sizes_{std::vector<double>(image_.labels.size(), kRadius),
+                   scene_.has_size_grid ? shrinking_sizes(image_) : nullptr};
   Refinement refinement_;
 };
 
@@ -93,12 +158,21 @@ TEST_P(Refined, KeepsTheInvariants) {
 }
 
 TEST_P(Refined, LeavesNoCellThatBreaksARule) {
-  Mesh& mesh = *refinement_.mesh;
-  const Parameters parameters{.delta_mm = delta_,
-                              .sizes = sizes_,
-                              .clamp_box = clamp_box(foreground_bounds(image_), delta_),
-                              .spacing_mm = spacing()};
-  EXPECT_EQ(broken_rule(mesh, isosurface_, parameters), "");
+  EXPECT_EQ(broken_rule(*refinement_.mesh, isosurface_, parameters()), "");
+}
+
+TEST_P(Refined, RemembersOnlyFacetsToWhichR3DoesNotApply) {
+  EXPECT_FALSE(facets_passing_r3(*refinement_.mesh).empty());
+  EXPECT_EQ(broken_facet(*refinement_.mesh, isosurface_, parameters()), "");
+}
+
+// Then R3 still applies to other facets.
+TEST_P(Refined, RemembersOnlySuchFacetsInTheMiddleOfARun) {
+  for (const double share : {0.3, 0.6}) {
+    const auto cells = static_cast<double>(refinement_.mesh->num_cells());
+    const Refinement part = refine({.max_elements = static_cast<std::uint64_t>(share * cells)});
+    EXPECT_EQ(broken_facet(*part.mesh, isosurface_, parameters()), "") << share;
+  }
 }
 
 TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
@@ -116,10 +190,10 @@ TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Method>>& test) {
-  const auto& [image, method] = test.param;
+std::string name_of(const testing::TestParamInfo<std::tuple<Scene, Method>>& test) {
+  const auto& [scene, method] = test.param;
   std::ostringstream text;
-  text << image.name << '_' << to_string(method.algorithm) << '_' << method.num_workers << '_'
+  text << scene << '_' << to_string(method.algorithm) << '_' << method.num_workers << '_'
        << to_string(method.contention) << '_' << to_string(method.executor)
        << (method.is_perturbed ? "_perturbed" : "");
   std::string name = text.str();
@@ -128,7 +202,12 @@ std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Method>>
 }
 
 INSTANTIATE_TEST_SUITE_P(Images, Refined,
-                         testing::Combine(testing::ValuesIn(images()), testing::ValuesIn(kMethods)), name_of);
+                         testing::Combine(testing::ValuesIn(plain_scenes()), testing::ValuesIn(kMethods)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Special, Refined,
+                         testing::Combine(testing::ValuesIn(special_scenes()),
+                                          testing::ValuesIn(few_methods())),
+                         name_of);
 
 }  // namespace
 }  // namespace podm::test
