@@ -1,4 +1,34 @@
 // The store of the triangulation: vertices and cells by 32-bit id, one cache line per cell.
+//
+// A cell's word (Cell::stamp_and_bits) holds the stamp, the mark, the reliance and the passing facets. A
+// writer loads the word, changes its own bits and stores the word. The store would undo a change that another
+// worker made after the load.
+//
+// Proposition: no two workers write the word of a cell at the same time, and each writer loads what the last
+// one stored. Proof:
+//   1. set_relies_on_others() and add_facets_passing_r3() write for the worker that has reserved the cell. It
+//      holds the cell's vertices 0 and 3 (lock_to_read.h).
+//   2. set_mirror() writes for a worker that holds the three vertices of the facet (vertex_locks.h).
+//   3. mark() and renew() write for a worker that holds all four vertices. The worker that made a cell holds
+//      three or four of its vertices, as the inserted vertex is not locked. It may write anything.
+//   4. Any two of these sets have a vertex in common. Two reservations hold the same two vertices, because a
+//      living cell keeps the order of its vertices. Three of four vertices include vertex 0 or 3, and two
+//      vertices of any other three. A lock has one holder, and passes on all that its last holder wrote.
+//   5. A slot without a living cell belongs to its pool, and a reservation of it fails.
+// Two vertices other than 0 and 3 do not suffice: those of another reservation could be the remaining two.
+// Operation::reach() locks vertices 0 and 1, and its caller only reads. Vertices that no other worker can
+// reach count as held (algorithms/leaf_locks.h). Ranks have a store each, so a zone only adds conditions
+// (distributed/zone.h). With NoLocks a store has one worker at a time.
+//
+// A worker that has reserved a cell reads the passing facets of its neighbours while other workers may write
+// them. It needs only the bit of the common facet. The maker of the reserved cell has cleared that bit in
+// set_mirror(). A worker that sets the bit later has tested the facet with both cells that it has now,
+// because it holds one of the facet's vertices while it tests and writes. If the reader misses the bit, it
+// tests the facet again.
+//
+// Unproved: a reservation takes a stamp for a cell's name, but stamps repeat after 1024 renewals of the slot.
+// Tests: WordOfCell and PassingFacets (test_word_of_cell.cpp), Refined
+// (algorithms/tests/test_refinement.cpp).
 #pragma once
 
 #include <array>

@@ -17,7 +17,7 @@
 // lock that the reader took later; or it made the cell as well as the neighbour, and the reader learnt of the
 // cell after that. The points of their vertices do not change either, locked or not: a vertex is removed only
 // together with all cells around it. Readers write only labels, and all write the same label
-// (Rules::label_of).
+// (Rules::label_of). The worker that has reserved a cell also writes bits of the cell's word (mesh.h).
 #pragma once
 
 #include <cstdint>

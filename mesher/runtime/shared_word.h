@@ -1,6 +1,7 @@
 // Words that one worker may read while another writes them. Either the writer holds the locks that guard
 // them, and the reader only guesses: it locks the vertices that the guess names and then reads again
-// (Operation::reserve). Or all workers write the same value (Rules::label_of).
+// (Operation::reserve). Or all workers write the same value (Rules::label_of). Or both values are right for
+// the reader (Mesh::facets_passing_r3).
 #pragma once
 
 #include <atomic>
