@@ -95,7 +95,7 @@ class FeatureTransform {
   double step_mm_ = 0, reach_mm_ = 0;
 };
 
-/// What the transform stores of a voxel: the entry of its brick, and its word.
+/// The data that the transform stores of a voxel: the entry of its brick, and its word.
 class StoredFeature {
  public:
   /// `word` is 0 if the brick is far.

@@ -78,7 +78,7 @@ struct SurfaceCenter {
   CellId start;  // a cell in conflict with it
 };
 
-/// What R3 finds at the facets of a cell.
+/// The findings of R3 at the facets of a cell.
 struct FacetSearch {
   std::optional<SurfaceCenter> center;
   FacetMask passing;  // facets on which R3 was tested and to which it does not apply
