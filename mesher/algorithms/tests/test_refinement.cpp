@@ -166,6 +166,29 @@ TEST_P(Refined, RemembersOnlyFacetsToWhichR3DoesNotApply) {
   EXPECT_EQ(broken_facet(*refinement_.mesh, isosurface_, parameters()), "");
 }
 
+// A facet counts as tested if one of its cells remembers it.
+TEST_P(Refined, TestsR3AgainOnOtherFacetsOnly) {
+  Mesh& mesh = *refinement_.mesh;
+  const Parameters parameters = this->parameters();
+  const Rules rules(mesh, isosurface_, parameters);
+  int num_of_neighbors = 0;
+  for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+    if (!mesh.cell(c).is_alive()) continue;
+    FacetMask tested = mesh.facets_passing_r3(c);
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId mirror = mesh.cell(c).mirrors[k];
+      if (mirror == kNoFacet || (tested >> k & 1) != 0) continue;
+      if ((mesh.facets_passing_r3(cell_of(mirror)) >> index_in_cell(mirror) & 1) == 0) continue;
+      tested |= 1u << k;
+      ++num_of_neighbors;
+    }
+    const Examination t = rules.examine(c);
+    const FacetMask all = rules.search_facets(t, Rules::Facets::kAll).passing;
+    ASSERT_EQ(rules.search_facets(t, Rules::Facets::kUntested).passing, all & ~tested) << c;
+  }
+  EXPECT_GT(num_of_neighbors, 0);
+}
+
 // Then R3 still applies to other facets.
 TEST_P(Refined, RemembersOnlySuchFacetsInTheMiddleOfARun) {
   for (const double share : {0.3, 0.6}) {
