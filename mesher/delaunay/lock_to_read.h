@@ -15,18 +15,20 @@ namespace podm {
 /// stamp. Unless the result is kDone, the caller releases all locks.
 //
 // The stamp is compared under the locks: a worker that replaced the cell after this peek held both vertices
-// before this worker did, and a peek that returns the new cell sees the new stamp as well.
+// before this worker did, and a peek that returns the new cell sees the new stamp as well. Stamps repeat
+// (Mesh::stamp). A cell with the same stamp is therefore read only if it has the vertices that are locked.
 template <class Locks, class Lock>
 StepResult lock_to_read(const Mesh& mesh, CellId c, std::uint32_t stamp, const Lock& lock) {
+  if constexpr (!Locks::kIsShared)
+    return mesh.stamp(c) == stamp && mesh.peek_is_alive(c) ? StepResult::kDone : StepResult::kStaleCell;
   StepResult result = StepResult::kDone;
-  if constexpr (Locks::kIsShared) {
-    const std::array<VertexId, 2> two = mesh.peek_two_vertices(c);
-    for (const VertexId v : std::span(two).first(locks_taken().to_read)) {
-      if (result != StepResult::kDone) break;
-      result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
-    }
+  const std::array<VertexId, 2> two = mesh.peek_two_vertices(c);
+  for (const VertexId v : std::span(two).first(locks_taken().to_read)) {
+    if (result != StepResult::kDone) break;
+    result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
   }
-  return mesh.stamp(c) == stamp ? result : StepResult::kStaleCell;
+  if (mesh.stamp(c) != stamp) return StepResult::kStaleCell;
+  return result == StepResult::kDone && mesh.peek_two_vertices(c) != two ? StepResult::kStaleCell : result;
 }
 
 }  // namespace podm

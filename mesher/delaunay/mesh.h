@@ -26,9 +26,10 @@
 // because it holds one of the facet's vertices while it tests and writes. If the reader misses the bit, it
 // tests the facet again.
 //
-// Unproved: a reservation takes a stamp for a cell's name, but stamps repeat after 1024 renewals of the slot.
-// Tests: WordOfCell and PassingFacets (test_word_of_cell.cpp), Refined
-// (algorithms/tests/test_refinement.cpp).
+// A reservation takes a stamp for a cell's name, but stamps repeat after 1024 renewals of the slot. It
+// therefore also compares the vertices that it has locked (lock_to_read.h). A cell with the same stamp and
+// the same two vertices is alive and locked: it may be read as well as the one that was listed. Tests:
+// WordOfCell and PassingFacets (test_word_of_cell.cpp), Refined (algorithms/tests/test_refinement.cpp).
 #pragma once
 
 #include <array>

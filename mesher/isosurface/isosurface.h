@@ -44,13 +44,13 @@ struct NearPoint {
 /// Up to four balls of one radius. A near point in one of them is good enough: the search for a nearer one
 /// ends.
 struct Cover {
-  std::array<Point, 4> centers;
+  std::array<const Point*, 4> centers;
   unsigned num_balls = 0;
   double squared_radius = 0;
 
   bool contains(const Point& z) const {
     return std::any_of(centers.begin(), centers.begin() + num_balls,
-                       [&](const Point& c) { return squared_distance(c, z) < squared_radius; });
+                       [&](const Point* c) { return squared_distance(*c, z) < squared_radius; });
   }
 };
 

@@ -72,14 +72,12 @@ Examination RulesOn<Cells>::examine(CellId c) const {
   const double squared_radius = squared_distance(center, mesh_.point(cell.vertices[3]));
   const double radius = std::sqrt(squared_radius);
   const auto [label, bound] = label_and_bound(c, radius);
-  Examination t{.cell = c,
-                .center = center,
-                .squared_radius = squared_radius,
-                .label = label,
-                .isosurface_distance = bound,
-                .is_distance_proven = true,
-                .nearest = {},
-                .is_covered = false};
+  Examination t;
+  t.cell = c;
+  t.center = center;
+  t.squared_radius = squared_radius;
+  t.label = label;
+  t.isosurface_distance = bound;
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
   const Cover cover = covered_by(cell);
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });
@@ -92,9 +90,10 @@ Examination RulesOn<Cells>::examine(CellId c) const {
 // The balls around the cell's own isosurface vertices.
 template <class Cells>
 Cover RulesOn<Cells>::covered_by(const Cell& cell) const {
-  Cover cover{{}, 0, squared_delta_};
+  Cover cover;
+  cover.squared_radius = squared_delta_;
   for (const VertexId v : cell.vertices) {
-    if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = mesh_.point(v);
+    if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = &mesh_.point(v);
   }
   return cover;
 }

@@ -63,12 +63,12 @@ struct Examination {
   CellId cell;
   Point center;
   double squared_radius;
-  LabelIndex label;            // the image's at the center
-  double isosurface_distance;  // a lower bound, from the center, mm
-  bool is_distance_proven;     // otherwise it rests on the nearest point found
+  LabelIndex label;                // the image's at the center
+  double isosurface_distance;      // a lower bound, from the center, mm
+  bool is_distance_proven = true;  // otherwise it rests on the nearest point found
   // z, if the circumball meets the isosurface and R1 or R2 may apply
   std::optional<NearPoint> nearest;
-  bool is_covered;  // z is covered by a vertex of the cell, so R1 does not apply
+  bool is_covered = false;  // z is covered by a vertex of the cell, so R1 does not apply
   /// True if R1 applies unless vertices of other cells cover z.
   bool relies_on_others() const { return nearest && !is_covered; }
 };
