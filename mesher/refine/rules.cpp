@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "podm/bounds.h"
-#include "runtime/shared_word.h"
 
 namespace podm {
 
@@ -31,12 +30,9 @@ RulesOn<Cells>::RulesOn(Cells& mesh, const Isosurface& isosurface, const Paramet
 // Several workers may look up the label of the same neighbor at once. Relaxed: all of them write the same
 // value.
 template <class Cells>
-LabelIndex RulesOn<Cells>::label_of(CellId c) const {
-  LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
-  if (label == kUnknownLabel) {
-    label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).center); });
-    store(mesh_.label(c), label, std::memory_order_relaxed);
-  }
+LabelIndex RulesOn<Cells>::look_up_label(CellId c) const {
+  const LabelIndex label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).center); });
+  store(mesh_.label(c), label, std::memory_order_relaxed);
   return label;
 }
 

@@ -39,6 +39,7 @@
 #include "delaunay/mesh.h"
 #include "delaunay/vertex_move.h"
 #include "isosurface/isosurface.h"
+#include "runtime/shared_word.h"
 #include "sizing/size_field.h"
 
 namespace podm {
@@ -130,7 +131,10 @@ class RulesOn {
 
   /// Returns the label at the circumcenter. It is kept in the store, so that all cells around see the same
   /// label.
-  LabelIndex label_of(CellId c) const;
+  LabelIndex label_of(CellId c) const {
+    const LabelIndex known = load(mesh_.label(c), std::memory_order_relaxed);
+    return known != kUnknownLabel ? known : look_up_label(c);
+  }
 
  private:
   // Both oracles give the same answers. A run that counts nothing pays one branch per question.
@@ -140,6 +144,7 @@ class RulesOn {
       return question(*counted_);
     return question(isosurface_);
   }
+  LabelIndex look_up_label(CellId c) const;
   LabelAndBound label_and_bound(CellId c, double radius) const;
   double distance_lower_bound(const Point& p, double radius) const;
   Cover covered_by(const Cell& cell) const;
