@@ -42,16 +42,17 @@ void Pool::reserve(const std::vector<CellId>& dying, std::size_t created, std::s
 }
 
 void Pool::replace(const std::vector<CellId>& dying, std::size_t count, std::vector<CellId>& created) {
-  created.clear();
+  created.resize(count);
+  auto next = created.begin();
   for (const CellId c : dying) {
-    if (created.size() < count && cells_.is_own(c)) {
-      created.push_back(c);
+    if (next != created.end() && cells_.is_own(c)) {
+      *next++ = c;
       continue;
     }
     mesh_.renew(c, {kNoVertex, kNoVertex, kNoVertex, kNoVertex});
     cells_.release(c);
   }
-  while (created.size() < count) created.push_back(cells_.take());
+  std::generate(next, created.end(), [&] { return cells_.take(); });
 }
 
 void Pool::release_vertex(VertexId v) {

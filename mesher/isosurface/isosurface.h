@@ -184,9 +184,10 @@ class Oracle {
   std::optional<EightVoxels> features_around(const Point& u) const;
   Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
   bool find_nearer_midpoint(const Point& u, Nearest& best) const;
-  bool pull(Sheet& sheet, Point& z) const;
-  std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u, const Point& z,
-                                     double negligible) const;
+  // Two calls each, in the loop that takes most of a search.
+  [[gnu::always_inline]] inline bool pull(Sheet& sheet, Point& z) const;
+  [[gnu::always_inline]] inline std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u,
+                                                                   const Point& z, double negligible) const;
   double negligible_gain(const Nearest& best) const;
   void descend(Sheet& sheet, const Point& u, Nearest& best) const;
   std::optional<NearPoint> foot(const Nearest& midpoint, const Point& u, double radius) const;
