@@ -185,7 +185,8 @@ class InBrowser(ServeTestCase):
         for digit in "30":
             self.browser.press(digit, ord(digit), digit)
         way += self.tab_to("run")
-        self.assertRegex(self.text("#command"), "--radius 30 ")
+        # The server composes the command after each change.
+        self.wait_for("document.querySelector('#command').textContent.includes('--radius 30 ')")
         self.browser.press(*ENTER)
         self.wait_for_claims()
         way += self.tab_to("The mesh in three dimensions, cells coloured by label")
