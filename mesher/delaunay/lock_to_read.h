@@ -16,7 +16,7 @@ namespace podm {
 //
 // The stamp is compared under the locks: a worker that replaced the cell after this peek held both vertices
 // before this worker did, and a peek that returns the new cell sees the new stamp as well. Stamps repeat
-// (Mesh::stamp). A cell with the same stamp is therefore read only if it has the vertices that are locked.
+// (mesh.h). A cell with the same stamp is therefore read only if it has the vertices that are locked.
 template <class Locks, class Lock>
 StepResult lock_to_read(const Mesh& mesh, CellId c, std::uint32_t stamp, const Lock& lock) {
   if constexpr (!Locks::kIsShared)

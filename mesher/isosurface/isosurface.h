@@ -184,7 +184,7 @@ class Oracle {
   std::optional<EightVoxels> features_around(const Point& u) const;
   Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
   bool find_nearer_midpoint(const Point& u, Nearest& best) const;
-  // Two calls each, in the loop that takes most of a search.
+  // Both are steps of the loop that takes most of a search.
   [[gnu::always_inline]] inline bool pull(Sheet& sheet, Point& z) const;
   [[gnu::always_inline]] inline std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u,
                                                                    const Point& z, double negligible) const;

@@ -152,15 +152,16 @@ Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule r
 template <class Locks>
 bool Worker<Locks>::is_covered(const Point& z) const {
   bool is_covered = false;
-  operation_.for_each_region_vertex_near(
-      rules_.squared_delta(), [&](VertexId v) { is_covered = is_covered || rules_.is_covered(z, v); });
+  operation_.for_each_region_vertex_near(rules_.squared_reach_of_cover(), [&](VertexId v) {
+    is_covered = is_covered || rules_.is_covered(z, v);
+  });
   return is_covered;
 }
 
 template <class Locks>
 StepResult Worker<Locks>::plan_r6_removals(const Point& z) {
   bool is_due = false;
-  operation_.for_each_region_vertex_near(4 * rules_.squared_delta(),
+  operation_.for_each_region_vertex_near(rules_.squared_reach_of_r6(),
                                          [&](VertexId v) { is_due = is_due || rules_.r6_removes(v, z); });
   StepResult planned = StepResult::kDone;
   if (!is_due) return planned;

@@ -105,9 +105,10 @@ class RulesOn {
   /// nearest one would be joined to the point by a Gabriel edge and is therefore among them.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
-  /// The squared distance, mm^2, within which a vertex covers a sample; twice the distance bounds
-  /// r6_removes().
-  double squared_delta() const { return squared_delta_; }
+  /// The squared distances from a sample, mm^2, below which is_covered() and r6_removes() may hold of a
+  /// vertex.
+  double squared_reach_of_cover() const { return squared_delta_; }
+  double squared_reach_of_r6() const { return squared_two_delta_; }
   /// Returns the isosurface point nearest to p, if within `radius_mm`.
   std::optional<Point> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
