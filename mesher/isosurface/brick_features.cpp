@@ -13,7 +13,7 @@ namespace {
 
 // The window has kWindow voxels along an axis if it spans two bricks on each side. The brick's four begin at
 // kFirst.
-constexpr int kWindow = 20, kFirst = 8, kMostOffset = 11, kNoOffset = 12;
+constexpr int kWindow = 20, kFirst = 8, kMostOffset = 11;
 
 // Rows or slices of the window from the brick outwards, and the distance of each from the brick.
 struct Outward {
@@ -34,35 +34,65 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double square(double x) { return x * x; }
 
-// The offset from voxel x to the nearest voxel in a row of the window, one bit per voxel. The row must not be
-// empty. If two are equally near, the lower one is returned.
-int nearest_in_row(std::uint32_t row, int x) {
-  const std::uint32_t up_to_x = row & ((2u << x) - 1), from_x = row >> x;
-  const int below = up_to_x != 0 ? x - 31 + std::countl_zero(up_to_x) : kNoOffset;
-  const int above = std::countr_zero(from_x);
-  return below <= above ? -below : above;
+// One value per voxel for four adjacent voxels along x.
+using Ints [[gnu::vector_size(16)]] = std::int32_t;
+using Longs [[gnu::vector_size(32)]] = std::int64_t;
+using Doubles [[gnu::vector_size(32)]] = double;
+
+// The offset d of a voxel along a row, as a number that grows with the distance: 2|d|, and 1 more upwards.
+// The least number is that of the nearest voxel, and of the lower one if two are equally near.
+constexpr int kBelow = 0, kAbove = 1;
+
+// The least numbers of offsets from the brick's four voxels of a row to those of the four that the bits mark.
+constexpr auto kWithinBrick = [] {
+  std::array<Ints, 16> least{};
+  for (unsigned bits = 0; bits < 16; ++bits) {
+    std::array<int, 4> numbers{};
+    for (int x = 0; x < 4; ++x) {
+      int& number = numbers[static_cast<std::size_t>(x)] = 2 * kWindow;
+      for (int to = 0; to < 4; ++to)
+        if ((bits >> to & 1) != 0)
+          number = std::min(number, to > x ? 2 * (to - x) + kAbove : 2 * (x - to) + kBelow);
+    }
+    least[bits] = Ints{numbers[0], numbers[1], numbers[2], numbers[3]};
+  }
+  return least;
+}();
+
+// The numbers of the offsets from the brick's four voxels to the nearest in a row of the window, one bit per
+// voxel. The row must not be empty.
+Ints nearest_in_row(std::uint32_t row) {
+  const int gap_below = std::countl_zero(row << (32 - kFirst)),
+            gap_above = std::countr_zero(row >> (kFirst + 4));
+  const Ints below = 2 * gap_below + kBelow + Ints{2, 4, 6, 8},
+             above = 2 * gap_above + kAbove + Ints{8, 6, 4, 2};
+  const Ints outside = below < above ? below : above, within = kWithinBrick[row >> kFirst & 15];
+  return within < outside ? within : outside;
 }
 
 // Four adjacent voxels along x: the least squared distance found yet, and the bits of its offset.
 struct Four {
-  alignas(32) std::array<double, 4> squared{kInfinity, kInfinity, kInfinity, kInfinity};
-  alignas(32) std::array<std::int64_t, 4> bits{};
+  Doubles squared = Doubles{} + kInfinity;
+  Longs bits{};
 
   void take_if_nearer(const Four& from, double squared_along, std::int64_t bits_along) {
-    for (std::size_t x = 0; x < 4; ++x) {
-      const double s = from.squared[x] + squared_along;
-      const std::int64_t b = from.bits[x] + bits_along;
-      const bool is_nearer = s < squared[x];
-      bits[x] = is_nearer ? b : bits[x];
-      squared[x] = is_nearer ? s : squared[x];
-    }
+    const Doubles s = from.squared + squared_along;
+    const Longs is_nearer = s < squared;
+    bits = is_nearer ? from.bits + bits_along : bits;
+    squared = is_nearer ? s : squared;
   }
 };
 
+// The nearest in a row whose voxels are `spacing` mm long. The row must not be empty.
+Four four_in_row(std::uint32_t row, double spacing) {
+  const Ints numbers = nearest_in_row(row), distance = numbers >> 1, below = (numbers & 1) - 1;
+  const Doubles along = spacing * __builtin_convertvector(distance, Doubles);
+  return {along * along, __builtin_convertvector((distance ^ below) - below, Longs)};
+}
+
 double greatest(const std::array<Four, 16>& rows) {
-  std::array<double, 4> most{};
-  for (const Four& four : rows)
-    for (std::size_t x = 0; x < 4; ++x) most[x] = std::max(most[x], four.squared[x]);
+  Doubles most{};
+  for (const Four& four : rows) most = four.squared > most ? four.squared : most;
   return std::max({most[0], most[1], most[2], most[3]});
 }
 
@@ -116,10 +146,10 @@ struct BrickFeatures::Window {
 
 BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
                              const Surroundings& surroundings)
-    : bricks_(bricks), masks_(masks), surroundings_(surroundings) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (int d = -kMostOffset; d <= kMostOffset; ++d)
-      squared_[a][static_cast<std::size_t>(d + kMostOffset)] = square(image.spacing[a] * d);
+    : bricks_(bricks), masks_(masks), surroundings_(surroundings), spacing_(image.spacing) {
+  for (int d = -kMostOffset; d <= kMostOffset; ++d) {
+    squared_y_[static_cast<std::size_t>(d + kMostOffset)] = square(spacing_[1] * d);
+    squared_z_[static_cast<std::size_t>(d + kMostOffset)] = square(spacing_[2] * d);
   }
 }
 
@@ -128,35 +158,33 @@ BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, c
 // the slices. Rows and slices farther than all features found yet, or than the reach, are skipped.
 std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
   const Window window(*this, brick);
-  const auto squared = [&](std::size_t axis, int offset) {
-    return squared_[axis][static_cast<std::size_t>(offset + kMostOffset)];
+  const auto squared_y = [&](int offset) {
+    return squared_y_[static_cast<std::size_t>(offset + kMostOffset)];
+  };
+  const auto squared_z = [&](int offset) {
+    return squared_z_[static_cast<std::size_t>(offset + kMostOffset)];
   };
   const double squared_reach = square(surroundings_.reach_mm());
   double farthest2 = squared_reach;
   std::array<Four, 16> nearest;  // rows of the brick
   for (const auto& [z, gap_z] : kOutward) {
-    if (squared(2, gap_z) >= farthest2) break;
+    if (squared_z(gap_z) >= farthest2) break;
     if (!window.has_surface(z)) continue;
     std::array<Four, 4> in_slice;
     for (const auto& [y, gap_y] : kOutward) {
-      if (squared(1, gap_y) + squared(2, gap_z) >= farthest2) break;
+      if (squared_y(gap_y) + squared_z(gap_z) >= farthest2) break;
       const std::uint32_t row = window.row(y, z);
       if (row == 0) continue;
-      Four in_row;
-      for (std::size_t x = 0; x < 4; ++x) {
-        const int offset = nearest_in_row(row, kFirst + static_cast<int>(x));
-        in_row.squared[x] = squared(0, offset);
-        in_row.bits[x] = offset;
-      }
+      const Four in_row = four_in_row(row, spacing_[0]);
       for (int to = 0; to < 4; ++to) {
         const int along = y - kFirst - to;
-        in_slice[static_cast<std::size_t>(to)].take_if_nearer(in_row, squared(1, along), along * kBitsAlongY);
+        in_slice[static_cast<std::size_t>(to)].take_if_nearer(in_row, squared_y(along), along * kBitsAlongY);
       }
     }
     for (int to = 0; to < 4; ++to) {
       const int along = z - kFirst - to;
       for (std::size_t y = 0; y < 4; ++y)
-        nearest[static_cast<std::size_t>(4 * to) + y].take_if_nearer(in_slice[y], squared(2, along),
+        nearest[static_cast<std::size_t>(4 * to) + y].take_if_nearer(in_slice[y], squared_z(along),
                                                                      along * kBitsAlongZ);
     }
     farthest2 = std::min(squared_reach, greatest(nearest));

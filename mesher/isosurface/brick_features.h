@@ -70,7 +70,8 @@ class BrickFeatures {
   const BrickGrid& bricks_;
   const SurfaceMasks& masks_;
   const Surroundings& surroundings_;
-  std::array<std::array<double, 24>, 3> squared_;  // mm^2, by axis and offset + kMostOffset
+  std::array<double, 3> spacing_;
+  std::array<double, 24> squared_y_, squared_z_;  // mm^2, by offset + kMostOffset
 };
 
 /// The neighborhoods of the surface voxels of a brick. It reads the 6^3 labels in and around the brick once.
