@@ -10,10 +10,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from figures.write import write_json
+from figures.whole_file import write_json
 
-from .sources import ROOT
-
+ROOT = Path(__file__).resolve().parents[2]
 HASHES = ROOT / "results" / "reference" / "canonical_hashes.json"
 SCHEMA = "podm-canonical-hashes/1"
 LONGEST_S = 1200  # of one mesh, also where the processor is emulated

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from figures.write import write_text
+from figures.whole_file import write_text
 
 from .audit import pages_of
 from .errors import DocsError

@@ -15,7 +15,8 @@ from .experiment_verdicts import HOW, WITHDRAWN, VerdictsError, counts, read_exp
 from .load import RecordError, load
 from .outcome import MEASURED_TABLES, make, readable_experiments, readable_verdicts
 from .schedule import ScheduleError, read_schedule
-from .write import markdown, write_figure, write_json, write_text
+from .whole_file import write_json, write_text
+from .write import markdown, write_figure
 
 
 class ReportError(Exception):

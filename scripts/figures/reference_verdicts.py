@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from .experiment_verdicts import SCHEMA, VerdictsError, read_experiment_verdicts
-from .write import write_text
+from .whole_file import write_text
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPERIMENTS = ROOT / "experiments"

@@ -14,7 +14,8 @@ from pathlib import Path
 
 from . import scaling, style
 from .load import RecordError, load
-from .write import write_figure, write_text
+from .whole_file import write_text
+from .write import write_figure
 
 ROOT = Path(__file__).resolve().parents[2]
 STEPS = 8

@@ -1,4 +1,5 @@
 """Writes a file completely or not at all."""
+import json
 import os
 
 
@@ -11,3 +12,11 @@ def write_whole(path, data):
     except BaseException:
         aside.unlink(missing_ok=True)
         raise
+
+
+def write_text(path, text):
+    write_whole(path, text.encode())
+
+
+def write_json(path, value):
+    write_text(path, json.dumps(value, indent=1, allow_nan=False) + "\n")

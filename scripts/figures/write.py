@@ -1,6 +1,5 @@
-"""Writes tables and figures to files, completely or not at all."""
+"""Writes figures, and tables as Markdown."""
 import io
-import json
 import re
 import textwrap
 
@@ -9,14 +8,6 @@ import pandas
 
 from . import style
 from .whole_file import write_whole
-
-
-def write_text(path, text):
-    write_whole(path, text.encode())
-
-
-def write_json(path, value):
-    write_text(path, json.dumps(value, indent=1, allow_nan=False) + "\n")
 
 
 def write_figure(figure, folder, name):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from figures.__main__ import INPUT_ERRORS, add_inputs, read_inputs
 from figures.outcome import make
-from figures.write import write_text
+from figures.whole_file import write_text
 
 from .page import page
 from .viewer import TooManyCells, pack
