@@ -14,14 +14,14 @@ function(podm_note_library program name)
   set_property(GLOBAL APPEND PROPERTY podm_libraries_of_${program} "${name} ${version}")
 endfunction()
 
-# Returns all compile flags, those of podm_flags included, without warnings, which change no program.
+# Returns all compile flags of this folder, those of podm_flags included, without warnings and names of build folders,
+# which change no program.
 function(_podm_flags result)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   get_target_property(options podm_flags INTERFACE_COMPILE_OPTIONS)
-  list(FILTER options EXCLUDE REGEX "^-W")
-  if(PODM_SANITIZE)
-    list(APPEND options -fsanitize=${PODM_SANITIZE})
-  endif()
+  get_directory_property(options_of_folder COMPILE_OPTIONS)
+  list(APPEND options ${options_of_folder})
+  list(FILTER options EXCLUDE REGEX "^-W|^-fprofile-prefix-path")
   string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options})
   set(${result} "${flags}" PARENT_SCOPE)
 endfunction()
@@ -43,5 +43,8 @@ function(podm_build_info target program namespace folder)
     "-DFLAGS=${flags}" "-DLIBRARIES=${libraries}" -P ${PROJECT_SOURCE_DIR}/cmake/WriteBuildInfo.cmake)
   add_dependencies(${target} ${target}_build_info)
   target_sources(${target} PRIVATE ${source})
+  if(PODM_PROFILE)  # a profile is of sources with the same path, and this source is in the build folder
+    set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -Wno-coverage-mismatch)
+  endif()
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 endfunction()

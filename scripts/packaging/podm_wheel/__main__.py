@@ -25,8 +25,8 @@ def arguments_of(words):
     parser = argparse.ArgumentParser(
         prog="make_wheel", description="Links the programs and the extension module of a build again, for all systems "
         "with glibc and a processor of the level that they are compiled for, and writes a wheel of them.")
-    parser.add_argument("--build", type=Path, default=ROOT / "build", metavar="FOLDER",
-                        help="the finished build, by `make build python` [default: build]")
+    parser.add_argument("--build", type=Path, default=ROOT / "build-profiled", metavar="FOLDER",
+                        help="the finished build, by `make profiled` [default: build-profiled]")
     parser.add_argument("--libraries", type=Path, default=ROOT / "build-wheel", metavar="FOLDER",
                         help="what scripts/packaging/libraries has made [default: build-wheel]")
     parser.add_argument("--python", default="/usr/bin/python3", metavar="FILE",
