@@ -1,6 +1,7 @@
 #!/bin/sh
 # Usage: ci/packages.sh [wheel|older|deb|sdist|processor...]
 # Makes the wheel, the source distribution and the Debian packages, and uses each on a system that was made for it.
+# There the podm of wheel and Debian packages makes the meshes of results/reference/canonical_hashes.json.
 # Needs root, and a mirror of Debian. Keeps nothing. Without words it makes all of these checks:
 #   wheel      on Debian 12 with Python, numpy and pip, and nothing else, pip installs the wheel without a network
 #   older      on Debian 11, whose glibc is 2.31, the programs of the wheel run
@@ -14,6 +15,7 @@ cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- wheel older deb sdist processor
 . scripts/packaging/mirror.sh
 scripts/setup build python packaging
+built=$PWD/build-profiled
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 version=$(sed -n 's/^project(podm VERSION \([^ ]*\).*/\1/p' CMakeLists.txt)
@@ -23,7 +25,12 @@ make_system() {
   mmdebstrap --quiet --variant=minbase --include="$3" "$2" "$scratch/$1" "$(debian_mirror)"
   mkdir "$scratch/$1/podm"
   cp scripts/packaging/tests/use_podm.py "$scratch/$1/podm"
+  cp -r --parents scripts/canonical_hashes scripts/docs scripts/figures experiments/machines \
+    results/reference/canonical_hashes.json "$scratch/$1/podm"
 }
+
+# In a system: podm makes the committed meshes.
+hashes='python3 -B scripts/canonical_hashes --podm "$(command -v podm)"'
 
 # Runs the command $2 in the system $1. Its mounts end with it.
 in_system() {
@@ -42,6 +49,7 @@ check_wheel() {
     podm phantom abdomen --size 64 -o seg.nii.gz
     podm mesh seg.nii.gz --radius 16 --quiet -o mesh.vtu'
   echo "from the wheel to a first mesh: $(($(date +%s) - start)) s"
+  in_system wheel "$hashes"
   in_system wheel 'python3 -B use_podm.py; python3 -m pip uninstall --quiet --yes --break-system-packages podmark
     rm -rf mesh.vtu mesh_facets.vtu seg.nii.gz'
   find "$scratch/wheel" -name '*podm*' | sort | diff "$scratch/before" -
@@ -50,7 +58,9 @@ check_wheel() {
 check_older() {
   make_system older bullseye python3
   python3 -m zipfile -e "$wheel" "$scratch/older/podm"
-  in_system older 'chmod +x podm/bin/*; PATH=/podm/podm/bin:$PATH PODM_WITHOUT_PACKAGE=1 python3 -B use_podm.py'
+  in_system older 'chmod +x podm/bin/*; export PATH=/podm/podm/bin:$PATH
+    PODM_WITHOUT_PACKAGE=1 python3 -B use_podm.py
+    '"$hashes"
 }
 
 check_deb() {
@@ -63,6 +73,7 @@ check_deb() {
   in_system deb 'apt-get update -qq
     apt-get install -qq --no-install-recommends ./*.deb > log 2>&1 || { tail log; exit 1; }
     python3 -B use_podm.py
+    '"$hashes"'
     test -s /usr/share/man/man1/podm.1.gz
     test -s /usr/share/bash-completion/completions/podm
     apt-get install -qq --no-install-recommends cmake g++ make > log 2>&1
@@ -87,7 +98,7 @@ check_sdist() {
 check_processor() {
   python3 -m zipfile -e "$wheel" "$scratch/processor"
   chmod +x "$scratch"/processor/podm/bin/*
-  for folder in build/bin "$scratch/processor/podm/bin"; do
+  for folder in "$built/bin" "$scratch/processor/podm/bin"; do
     for program in "$folder/podm" "$folder/podm-verify" "$folder/podm-bench"; do
       code=0
       said=$(qemu-x86_64 -cpu Westmere "$program" --version 2>&1) || code=$?
@@ -99,7 +110,7 @@ check_processor() {
 
 rm -rf dist
 make wheel deb sdist
-/usr/bin/python3 -B scripts/packaging/tests/test_packaging.py
+PODM_BUILD=$built /usr/bin/python3 -B scripts/packaging/tests/test_packaging.py
 wheel=$(ls "$PWD"/dist/*-cp311-*.whl)
 debs=$(ls "$PWD"/dist/*.deb)
 for check; do
