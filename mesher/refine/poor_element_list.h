@@ -54,8 +54,8 @@ class PoorElementList {
       }
     }
     end_ = kept;
-    give_back();
     next_cleaning_ = std::max(first_cleaning_, kGrowth * size());
+    give_back();
   }
   /// Removes the oldest entries, until `max` live ones are found or half of the list is removed. Returns the
   /// live ones.
@@ -92,10 +92,16 @@ class PoorElementList {
 
   Entry& at(std::size_t i) { return chunks_[i >> kChunkBits][i % kChunk]; }
   const Entry& at(std::size_t i) const { return chunks_[i >> kChunkBits][i % kChunk]; }
-  // Keeps one chunk beyond that of the last entry: it may soon be needed.
+  // A list that has grown since its last cleaning keeps the memory that it needs until the next: to give
+  // pages back and to request them again takes longer than to fill them. All threads are interrupted when
+  // pages are given back, and each new page is cleared. A list that is shorter than after its last cleaning
+  // keeps little.
   void give_back() {
+    const bool has_grown = kGrowth * size() >= next_cleaning_;
+    const std::size_t soon = has_grown ? next_cleaning_ : std::min(next_cleaning_, size() + first_cleaning_),
+                      kept = std::max(end_, begin_ + soon);
     const auto unused = static_cast<std::ptrdiff_t>(begin_ >> kChunkBits),
-               used = static_cast<std::ptrdiff_t>((end_ + kChunk - 1) >> kChunkBits) + 1;
+               used = static_cast<std::ptrdiff_t>((kept + kChunk - 1) >> kChunkBits) + 1;
     if (used < std::ssize(chunks_)) chunks_.erase(chunks_.begin() + used, chunks_.end());
     chunks_.erase(chunks_.begin(), chunks_.begin() + unused);
     begin_ %= kChunk;

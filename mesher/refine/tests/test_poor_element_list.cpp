@@ -2,6 +2,7 @@
 #include "refine/poor_element_list.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -92,6 +93,29 @@ std::size_t resident_bytes() {
   std::size_t size = 0, resident = 0;
   statm >> size >> resident;
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::int64_t page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt;
+}
+
+TEST_F(PoorElements, KeepTheMemoryIntoWhichTheyGrowAgain) {
+  const auto stale = static_cast<std::uint16_t>(mesh_.stamp(0) + 1);
+  const auto grow_to_cleaning = [&] {
+    while (!list_.is_due_for_cleaning()) list_.push(0, stale);
+  };
+  grow_to_cleaning();
+  const std::size_t pages = sizeof(Entry) * list_.size() / static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  ASSERT_GT(pages, 16u);
+  for (int round = 0; round < 20; ++round) {
+    const std::int64_t faults = page_faults();
+    list_.drop_stale(mesh_);
+    ASSERT_TRUE(list_.is_empty());
+    grow_to_cleaning();
+    EXPECT_LT(page_faults() - faults, static_cast<std::int64_t>(pages / 4));
+  }
 }
 
 TEST_F(PoorElements, GiveTheirMemoryBackAsTheyBecomeFewer) {
