@@ -65,7 +65,7 @@ python:
 	$(CONFIGURE)
 	cmake --build build --target podm_python_package
 
-# The one build that is shipped. Packages are made of it.
+# Wheel and Debian packages are made of this build.
 profiled:
 	scripts/build_profiled build-profiled $(MARCH) $(CMAKE_FLAGS)
 

@@ -3,7 +3,7 @@
 // keeps the work where the cache is warm.
 //
 // In the middle of a run the list is as long as the store; at the end it is empty. It therefore consists of
-// chunks, which are given back as the list shrinks, and the store grows into their memory.
+// chunks, which are given back when the list becomes short, and the store grows into their memory.
 #pragma once
 
 #include <algorithm>
@@ -92,16 +92,16 @@ class PoorElementList {
 
   Entry& at(std::size_t i) { return chunks_[i >> kChunkBits][i % kChunk]; }
   const Entry& at(std::size_t i) const { return chunks_[i >> kChunkBits][i % kChunk]; }
-  // A list that has grown since its last cleaning keeps the memory that it needs until the next: to give
-  // pages back and to request them again takes longer than to fill them. All threads are interrupted when
-  // pages are given back, and each new page is cleared. A list that is shorter than after its last cleaning
-  // keeps little.
+  // A list that is no shorter than after its last cleaning keeps the memory that it needs until the next one.
+  // The system takes longer to take pages back, which interrupts all threads, and to provide new ones than
+  // the list takes to fill them. A shorter list keeps little. One chunk beyond the last entry may soon be
+  // needed.
   void give_back() {
-    const bool has_grown = kGrowth * size() >= next_cleaning_;
-    const std::size_t soon = has_grown ? next_cleaning_ : std::min(next_cleaning_, size() + first_cleaning_),
-                      kept = std::max(end_, begin_ + soon);
+    const bool is_shorter = kGrowth * size() < next_cleaning_;
+    const std::size_t soon = is_shorter ? std::min(next_cleaning_, size() + first_cleaning_) : next_cleaning_,
+                      kept = std::max(end_ + kChunk, begin_ + soon);
     const auto unused = static_cast<std::ptrdiff_t>(begin_ >> kChunkBits),
-               used = static_cast<std::ptrdiff_t>((kept + kChunk - 1) >> kChunkBits) + 1;
+               used = static_cast<std::ptrdiff_t>((kept + kChunk - 1) >> kChunkBits);
     if (used < std::ssize(chunks_)) chunks_.erase(chunks_.begin() + used, chunks_.end());
     chunks_.erase(chunks_.begin(), chunks_.begin() + unused);
     begin_ %= kChunk;

@@ -61,12 +61,12 @@ class StopControl {
   std::int64_t max_cells_;           // of this one
   Clock::time_point deadline_;
   std::function<void(std::uint64_t)> observe_;
-  // In cache lines of their own: each worker reads the reason at each attempt, and writes the number now and
+  Clock::time_point next_observation_ = Clock::now();
+  std::stop_source over_;
+  // In different cache lines: each worker reads the reason at each attempt, and writes the number now and
   // then.
   alignas(128) std::atomic<std::int64_t> num_cells_ = 0;
   alignas(128) std::atomic<StopReason> reason_ = StopReason::kComplete;  // kComplete until the end
-  std::stop_source over_;
-  Clock::time_point next_observation_ = Clock::now();
   std::stop_callback<std::function<void()>> on_stop_;  // last: it may be called while it is constructed
 };
 
