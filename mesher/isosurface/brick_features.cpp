@@ -158,12 +158,10 @@ BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, c
 // the slices. Rows and slices farther than all features found yet, or than the reach, are skipped.
 std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
   const Window window(*this, brick);
-  const auto squared_y = [&](int offset) {
-    return squared_y_[static_cast<std::size_t>(offset + kMostOffset)];
+  const auto by_offset = [](const auto& squares) {
+    return [&](int offset) { return squares[static_cast<std::size_t>(offset + kMostOffset)]; };
   };
-  const auto squared_z = [&](int offset) {
-    return squared_z_[static_cast<std::size_t>(offset + kMostOffset)];
-  };
+  const auto squared_y = by_offset(squared_y_), squared_z = by_offset(squared_z_);
   const double squared_reach = square(surroundings_.reach_mm());
   double farthest2 = squared_reach;
   std::array<Four, 16> nearest;  // rows of the brick
