@@ -158,31 +158,31 @@ BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, c
 // the slices. Rows and slices farther than all features found yet, or than the reach, are skipped.
 std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
   const Window window(*this, brick);
-  const auto by_offset = [](const auto& squares) {
-    return [&](int offset) { return squares[static_cast<std::size_t>(offset + kMostOffset)]; };
+  const auto at = [](const auto& squared, int offset) {
+    return squared[static_cast<std::size_t>(offset + kMostOffset)];
   };
-  const auto squared_y = by_offset(squared_y_), squared_z = by_offset(squared_z_);
   const double squared_reach = square(surroundings_.reach_mm());
   double farthest2 = squared_reach;
   std::array<Four, 16> nearest;  // rows of the brick
   for (const auto& [z, gap_z] : kOutward) {
-    if (squared_z(gap_z) >= farthest2) break;
+    if (at(squared_z_, gap_z) >= farthest2) break;
     if (!window.has_surface(z)) continue;
     std::array<Four, 4> in_slice;
     for (const auto& [y, gap_y] : kOutward) {
-      if (squared_y(gap_y) + squared_z(gap_z) >= farthest2) break;
+      if (at(squared_y_, gap_y) + at(squared_z_, gap_z) >= farthest2) break;
       const std::uint32_t row = window.row(y, z);
       if (row == 0) continue;
       const Four in_row = four_in_row(row, spacing_[0]);
       for (int to = 0; to < 4; ++to) {
         const int along = y - kFirst - to;
-        in_slice[static_cast<std::size_t>(to)].take_if_nearer(in_row, squared_y(along), along * kBitsAlongY);
+        in_slice[static_cast<std::size_t>(to)].take_if_nearer(in_row, at(squared_y_, along),
+                                                              along * kBitsAlongY);
       }
     }
     for (int to = 0; to < 4; ++to) {
       const int along = z - kFirst - to;
       for (std::size_t y = 0; y < 4; ++y)
-        nearest[static_cast<std::size_t>(4 * to) + y].take_if_nearer(in_slice[y], squared_z(along),
+        nearest[static_cast<std::size_t>(4 * to) + y].take_if_nearer(in_slice[y], at(squared_z_, along),
                                                                      along * kBitsAlongZ);
     }
     farthest2 = std::min(squared_reach, greatest(nearest));

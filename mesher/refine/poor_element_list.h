@@ -3,7 +3,7 @@
 // keeps the work where the cache is warm.
 //
 // In the middle of a run the list is as long as the store; at the end it is empty. It therefore consists of
-// chunks, which are given back when the list becomes short, and the store grows into their memory.
+// chunks, which are given back as the list shrinks, and the store grows into their memory.
 #pragma once
 
 #include <algorithm>
