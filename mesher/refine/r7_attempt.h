@@ -121,11 +121,13 @@ StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
   return judge_.obeys_r2_to_r5(t) ? StepResult::kDone : StepResult::kNoMove;
 }
 
-// If z were inserted, the isosurface vertex nearest to z would be joined to it. That vertex therefore belongs
-// to a cell whose ball contains z.
+// kDone: a vertex covers z, R1's sample for `start`, or the ball of `start` only touches the isosurface. R1
+// does not apply to such a cell (Rules::r1_sample). If z were inserted, the isosurface vertex nearest to z
+// would be joined to it. That vertex therefore belongs to a cell whose ball contains z.
 template <class Locks>
 StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   const VertexMove& move = operation_.move();
+  if (!move.is_in_conflict(start, z)) return StepResult::kDone;
   around_.clear();
   around_.add(start);
   for (std::size_t i = 0; i < around_.size(); ++i) {

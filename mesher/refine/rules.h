@@ -100,9 +100,11 @@ class RulesOn {
     if constexpr (std::same_as<Cells, Mesh>) isosurface_.prefetch(mesh_.peek_center(c));
   }
 
-  /// Returns R1's point, unless a vertex of the cell itself or of a neighbor already covers it. The caller
-  /// must still look for isosurface vertices closer than delta among the vertices of the point's cavity: the
-  /// nearest one would be joined to the point by a Gabriel edge and is therefore among them.
+  /// Returns R1's point, unless a vertex of the cell itself or of a neighbor already covers it. R1 does not
+  /// apply if the point is outside the cell's ball, which then only touches the isosurface: polishing has
+  /// moved the point. Otherwise the caller must still look for isosurface vertices closer than delta among
+  /// the vertices of the point's cavity: the nearest one would be joined to the point by a Gabriel edge and
+  /// is therefore among them.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
   /// The squared distances from a sample, mm^2, below which is_covered() and r6_removes() may hold of a
@@ -125,7 +127,7 @@ class RulesOn {
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool is_large(double squared_radius, LabelIndex label, const Point& center) const;
   /// True if no rule applies to the cell. May be false although a vertex farther away covers the cell's R1
-  /// sample.
+  /// sample, or the cell's ball only touches the isosurface.
   bool is_sound(CellId c) const;
   /// True if R6 removes v when z is inserted.
   bool r6_removes(VertexId v, const Point& z) const;

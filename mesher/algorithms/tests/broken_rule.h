@@ -9,7 +9,8 @@
 namespace podm::test {
 
 /// Returns the rule of R1 to R5 that a cell violates, and the cell, or an empty string. Looks for vertices
-/// that cover a sample of R1 among all vertices.
+/// that cover a sample of R1 among all vertices. R1 does not apply where the sample is outside the cell's
+/// ball.
 inline std::string broken_rule(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters) {
   const Rules rules(mesh, isosurface, parameters);
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
@@ -22,7 +23,7 @@ inline std::string broken_rule(Mesh& mesh, const Isosurface& isosurface, const P
     if (rules.r3_surface_center(t)) return broken("R3");
     if (const auto rule = rules.volume_rule(t)) return broken(*rule == Rule::kR4 ? "R4" : "R5");
     const auto z = rules.r1_sample(t);
-    bool is_covered = !z;
+    bool is_covered = !z || !mesh.is_in_conflict(c, *z);
     for (VertexId v = 0; v < mesh.vertex_bound() && !is_covered; ++v) is_covered = rules.is_covered(*z, v);
     if (!is_covered) return broken("R1");
   }
