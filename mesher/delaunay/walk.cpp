@@ -4,10 +4,6 @@
 
 namespace podm {
 
-namespace {
-
-// Returns the cell on the other side of a facet that p lies beyond, except the cell that the walk comes from;
-// otherwise c itself.
 CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous) {
   const Cell& cell = mesh.cell(c);
   for (unsigned k = 0; k < 4; ++k) {
@@ -19,8 +15,6 @@ CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous)
   }
   return c;
 }
-
-}  // namespace
 
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from) {
   for (CellId previous = from;;) {

@@ -6,6 +6,10 @@
 
 namespace podm {
 
+/// Returns the cell on the other side of a facet of c that p lies beyond, except `previous`, the cell that
+/// the walk comes from; c itself if there is no such facet.
+CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous);
+
 /// Returns a cell that contains p, a point in the box or on its boundary. `from` must be alive.
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from);
 

@@ -1,5 +1,6 @@
 #include "distributed/completion.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "distributed/zone.h"
+#include "runtime/parallel_collect.h"
 
 namespace podm {
 
@@ -36,27 +38,27 @@ std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
 // Returns those of the given cells (unset: of all cells) that have a vertex in the zone but may not be cells
 // of the whole mesh. Neighbours of cells with a vertex in the zone are included.
 std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cells, const Mesh& mesh,
-                                  const Zone& zone) {
-  std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
-  for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
-    is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
-  std::vector<CellId> unknown;
-  const std::size_t num_cells = cells ? cells->size() : mesh.cell_bound();
-  for (std::size_t i = 0; i < num_cells; ++i) {
-    const CellId c = cells ? (*cells)[i] : static_cast<CellId>(i);
+                                  const Zone& zone, std::size_t threads) {
+  const auto is_in_zone = [&](VertexId v) {
+    return mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
+  };
+  const auto check = [&](CellId c, std::vector<CellId>& unknown) {
     const Cell& cell = mesh.cell(c);
-    if (!cell.is_alive()) continue;
-    const auto& v = cell.vertices;
-    const int num_in_zone = is_in_zone[v[0]] + is_in_zone[v[1]] + is_in_zone[v[2]] + is_in_zone[v[3]];
-    if (num_in_zone == 0) continue;
+    if (!cell.is_alive()) return;
+    const auto num_in_zone = std::count_if(cell.vertices.begin(), cell.vertices.end(), is_in_zone);
+    if (num_in_zone == 0) return;
     if (!zone.knows(cell)) unknown.push_back(c);
     // Its neighbours have vertices in the zone, too, and are checked as cells of their own.
-    if (num_in_zone == 4) continue;
+    if (num_in_zone == 4) return;
     for (const FacetId mirror : cell.mirrors)
       if (mirror != kNoFacet && !zone.knows_beside(cell, mesh.cell(cell_of(mirror))))
         unknown.push_back(cell_of(mirror));
-  }
-  return unknown;
+  };
+  return parallel_collect<CellId>(cells ? cells->size() : mesh.cell_bound(), threads,
+                                  [&](std::size_t begin, std::size_t end, std::vector<CellId>& unknown) {
+                                    for (std::size_t i = begin; i < end; ++i)
+                                      check(cells ? (*cells)[i] : static_cast<CellId>(i), unknown);
+                                  });
 }
 
 // Inserts, for each cube, the largest of the balls centered in it. The other balls hardly reach farther, and
@@ -79,20 +81,20 @@ void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet&
 // Each iteration except the first looks only at the cells that changed and at those that were unknown. In
 // every iteration except the last, some rank requests a largest ball that it lacks, and therefore a new cube.
 // The number of cubes is finite, so the iterations end.
-Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
+Update complete(const Mesh& mesh, VertexSource& source, const CubeSet& own, int rings, std::size_t threads,
                 Communication& ranks) {
   CubeSet wanted = own.grown(rings);
-  Update sum = exchange.update(wanted);
+  Update sum = source.update(wanted, nullptr);
   std::optional<std::vector<CellId>> candidates;  // unset: all cells
   for (;;) {
-    const Zone zone(own, exchange.known(), rings);
-    const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone);
+    const Zone zone(own, source.known(), rings);
+    const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone, threads);
     insert_largest(unknown, mesh, wanted);
     std::array<std::uint64_t, 1> more{unknown.size()};
     ranks.sum(more);
     if (more[0] == 0) return sum;
     std::vector<CellId> made;
-    sum += exchange.update(wanted, &made);
+    sum += source.update(wanted, &made);
     candidates = around(mesh, made, unknown);
   }
 }

@@ -1,14 +1,16 @@
-// The last update of a rank after the rounds. It makes the rank's piece a piece of the whole mesh.
+// The update that makes a rank's part of the mesh a part of the whole mesh: of seeds before the rounds, of
+// other ranks' vertices after them.
 #pragma once
 
 #include "distributed/communication.h"
-#include "distributed/vertex_exchange.h"
+#include "distributed/vertex_source.h"
 
 namespace podm {
 
-/// Learns the changes of other ranks until every cell with a vertex in `own` is a cell of the whole mesh, and
-/// so are its neighbours. The first update covers `rings` rings of cubes around `own`. Collective.
-Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
+/// Learns vertices of the source until every cell with a vertex in `own` is a cell of the whole mesh, and so
+/// are its neighbours. The first update covers `rings` rings of cubes around `own`. `threads`: at least 1.
+/// Collective.
+Update complete(const Mesh& mesh, VertexSource& source, const CubeSet& own, int rings, std::size_t threads,
                 Communication& ranks);
 
 }  // namespace podm

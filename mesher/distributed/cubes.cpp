@@ -150,12 +150,11 @@ CubeCounts::CubeCounts(const CubeSet& set) {
     }
 }
 
-bool CubeCounts::covers(const CubePlace& low, const CubePlace& high) const {
+std::int64_t CubeCounts::count(const CubePlace& low, const CubePlace& high) const {
   const auto [a, b, c] = low;
   const int x = high[0] + 1, y = high[1] + 1, z = high[2] + 1;
-  const std::uint32_t count = below(x, y, z) - below(a, y, z) - below(x, b, z) - below(x, y, c) +
-                              below(a, b, z) + below(a, y, c) + below(x, b, c) - below(a, b, c);
-  return count == static_cast<std::uint32_t>(std::int64_t{x - a} * (y - b) * (z - c));
+  return below(x, y, z) - below(a, y, z) - below(x, b, z) - below(x, y, c) + below(a, b, z) + below(a, y, c) +
+         below(x, b, c) - below(a, b, c);
 }
 
 std::vector<std::uint32_t> CubeSet::components() const {

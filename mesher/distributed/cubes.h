@@ -43,6 +43,10 @@ class CubeGrid {
   }
   CubePlace place_of(CubeId cube) const;
   CubeId cube_at(const Point& p) const { return id(place_of(p)); }
+  /// Returns the low corner of a cube.
+  Point low_of(const CubePlace& at) const {
+    return origin_ + side_mm_ * Vector{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]};
+  }
   /// Returns the position along a space-filling curve that is finer than the cubes. Consecutive points on the
   /// curve are near each other.
   MortonCode place_on_curve(const Point& p) const;
@@ -143,10 +147,15 @@ class CubeSet {
 class CubeCounts {
  public:
   explicit CubeCounts(const CubeSet& set);
-  /// Returns true if the set holds all cubes from `low` to `high`.
-  bool covers(const CubePlace& low, const CubePlace& high) const;
+  /// Return true if the set holds all cubes from `low` to `high`, or any of them.
+  bool covers(const CubePlace& low, const CubePlace& high) const {
+    return count(low, high) ==
+           std::int64_t{high[0] - low[0] + 1} * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
+  }
+  bool meets(const CubePlace& low, const CubePlace& high) const { return count(low, high) > 0; }
 
  private:
+  std::int64_t count(const CubePlace& low, const CubePlace& high) const;
   std::uint32_t& below(int x, int y, int z) {
     return below_[(static_cast<std::size_t>(z) * sizes_[1] + static_cast<std::size_t>(y)) * sizes_[0] +
                   static_cast<std::size_t>(x)];

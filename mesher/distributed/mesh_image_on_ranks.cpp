@@ -115,6 +115,7 @@ class RunOnRank {
                     .phases_s = own.phases_s,
                     .spent = spending_.by_phase(),
                     .rounds = refined_->rounds,
+                    .seeds = refined_->seeds,
                     .last_update = refined_->last_update};
     std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
     result.report.guarantees.missing_labels =
@@ -161,6 +162,7 @@ class RunOnRank {
         .grid = grid,
         .rank_of_cube = std::vector<int>(grid.num_cubes()),
         .rounds = {},
+        .seeds = 0,
         .last_update = {}});
     spending_.end("refine");
   }

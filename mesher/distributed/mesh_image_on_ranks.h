@@ -20,6 +20,7 @@ struct PartOfRank {
   std::map<std::string, double> phases_s;
   SpentByPhase spent;               ///< by the phases of rounds.h, "transform", "extract" and "measure"
   std::vector<RoundReport> rounds;  ///< empty on one rank
+  std::uint64_t seeds = 0;          ///< vertices that it inserted before round 0
   Update last_update;               ///< the update that completed its block
 };
 

@@ -7,11 +7,15 @@
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm_loop.h"
 #include "distributed/completion.h"
+#include "distributed/learner.h"
 #include "distributed/leaves_of_zone.h"
 #include "distributed/messages.h"
+#include "distributed/predicted_work.h"
+#include "distributed/seeding.h"
+#include "distributed/vertex_exchange.h"
 #include "distributed/zone.h"
 #include "distributed/zones_of_round.h"
-#include "prediction/cost_model.h"
+#include "runtime/parallel_collect.h"
 #include "runtime/processor_seconds.h"
 
 namespace podm {
@@ -60,43 +64,6 @@ Ball ball_of(const CellName& name, double extent) {
   return {center, distance(center, v[0])};
 }
 
-double volume_of(const Mesh& mesh, const Cell& cell) {
-  const Point& a = mesh.point(cell.vertices[0]);
-  const auto edge = [&](std::size_t i) { return mesh.point(cell.vertices[i]) - a; };
-  return dot(cross(edge(1), edge(2)), edge(3)) / 6;
-}
-
-double area_of_facet(const Mesh& mesh, const Cell& cell, unsigned k) {
-  const auto point = [&](std::size_t i) {
-    return mesh.point(cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])]);
-  };
-  return std::sqrt(squared_length(cross(point(1) - point(0), point(2) - point(0)))) / 2;
-}
-
-// Returns the number of cells that the coarse mesh predicts per cube, in millionths. The numbers are
-// integers, so their sums are exact.
-std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& problem, const CubeGrid& grid) {
-  constexpr double kParts = 1e6;
-  std::vector<LabelIndex> labels(mesh.cell_bound());
-  for (CellId c = 0; c < mesh.cell_bound(); ++c)
-    if (mesh.cell(c).is_alive()) labels[c] = problem.isosurface.label_at(mesh.cell(c).center);
-  std::vector<std::uint64_t> cells(grid.num_cubes());
-  for (CellId c = 0; c < mesh.cell_bound(); ++c) {
-    const Cell& cell = mesh.cell(c);
-    if (!cell.is_alive()) continue;
-    const LabelIndex label = labels[c];
-    if (label == kBackground) continue;
-    double area_mm2 = 0;
-    for (unsigned k = 0; k < 4; ++k)
-      if (cell.mirrors[k] == kNoFacet || labels[cell_of(cell.mirrors[k])] != label)
-        area_mm2 += area_of_facet(mesh, cell, k);
-    const double radius_mm = std::sqrt(problem.sizes.squared_radius(label, cell.center));
-    cells[grid.cube_at(cell.center)] += static_cast<std::uint64_t>(
-        kParts * CostModel::cells(volume_of(mesh, cell), area_mm2, radius_mm, problem.delta_mm));
-  }
-  return cells;
-}
-
 // Returns the cube side that suits most cells, unless blocks would then be too coarse.
 double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
   constexpr double kCubesPerBlock = 512;
@@ -123,7 +90,8 @@ class Rounds {
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
-        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {
+        learner_(construction_, grid_),
+        exchange_(ranks, learner_, grid_) {
     if (options.algorithm == Algorithm::kPodm) return;
     const LeafOptions of_leaves{.initial_ratio = options.initial_ratio, .size_mm = options.leaf_size_mm};
     leaves_.emplace(construction_, levels_, of_leaves, options.algorithm, ranks);
@@ -134,23 +102,20 @@ class Rounds {
       construction_.timed(phase, [] {});  // every rank has these phases
     for (const char* phase : {"octree", "closing"})
       if (leaves_) construction_.timed(phase, [] {});
-    if (ranks_.rank() == 0)
-      refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
-                      team_.initial_workers);
-    if (is_over_anywhere()) return all_of_first_rank();
-    construction_.timed("initial", [&] { exchange_.copy_first(); });
-    cells_of_all_ = static_cast<std::int64_t>(construction_.mesh().num_cells());
-    cells_reported_ = stop_.num_cells();
-    divide_space();
+    construction_.timed("initial", [&] {
+      divide_space();
+      seed();
+    });
     spending_.end("initial");
     refine_in_rounds();
-    const Update last_update = complete(construction_.mesh(), exchange_,
-                                        cubes_of(ranks_.rank(), blocks_->ranks()), kKnownRings, ranks_);
+    const Update last_update =
+        complete(construction_.mesh(), exchange_, block(), kKnownRings, learner_.threads(), ranks_);
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = blocks_->ranks(),
             .rounds = std::move(rounds_),
+            .seeds = num_seeds_,
             .last_update = last_update,
             .spent = spending_.by_phase()};
   }
@@ -162,29 +127,38 @@ class Rounds {
     return num_over[0] > 0;
   }
 
-  // Divides space by the cuts of the first rank. On other ranks the centers of the same cells may differ in
-  // the last bit.
   void divide_space() {
-    Bytes message;
-    if (ranks_.rank() == 0) append(message, cut().cuts());
-    const std::vector<Bytes> received = ranks_.all_gather(std::move(message));
-    blocks_.emplace(grid_, MessageReader(received.front()).read<Blocks::Cut>());
+    if (cut_seed_ != 0) {
+      blocks_.emplace(grid_, cut_seed_, ranks_.size());
+    } else {
+      blocks_.emplace(grid_, predicted_work(problem_, grid_, learner_.threads(), ranks_), ranks_.size());
+    }
   }
 
-  Blocks cut() const {
-    if (cut_seed_ != 0) return Blocks(grid_, cut_seed_, ranks_.size());
-    return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+  CubeSet block() const { return cubes_of(ranks_.rank(), blocks_->ranks()); }
+
+  // Returns how much coarser seeds have to be, a power of two, for their cells to be at most half of the
+  // limit.
+  double seeds_within_limit() const {
+    constexpr double kCellsPerSeed = 7, kMost = 1024;
+    double coarser = 1;
+    for (; stop_.max_elements() > 0 && coarser < kMost; coarser *= 2) {
+      const LatticeSeeds seeds(problem_, levels_.clamp, learner_.threads(), coarser);
+      std::array<std::uint64_t, 1> num_seeds{seeds.in(block()).size()};
+      ranks_.sum(num_seeds);
+      if (2 * kCellsPerSeed * static_cast<double>(num_seeds[0]) <= static_cast<double>(stop_.max_elements()))
+        break;
+    }
+    return coarser;
   }
 
-  // Returns the whole mesh, which is on the first rank. Many of the first cells, those of the box, have the
-  // center of the box as their center. Their labels depend on its last bit, so the cells are made canonical.
-  DistributedRefinement all_of_first_rank() {
-    for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
-    return {.refinement = construction_.finish(),
-            .grid = grid_,
-            .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),
-            .rounds = {},
-            .last_update = {}};
+  // Inserts seeds until the cells with a vertex in the block are cells of the triangulation of all seeds.
+  void seed() {
+    const LatticeSeeds seeds(problem_, levels_.clamp, learner_.threads(), seeds_within_limit());
+    Seeding seeding(seeds, learner_, block());
+    complete(construction_.mesh(), seeding, block(), kKnownRings, learner_.threads(), ranks_);
+    num_seeds_ = seeding.num_inserted();
+    exchange_.begin(blocks_->ranks(), seeding.known());
   }
 
   // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex.
@@ -201,6 +175,8 @@ class Rounds {
     zone_of_ = blocks_->ranks();
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
     std::vector<CellName> here;  // deferred cells to be refined here
+    Construction::Entries first = own_cells();
+    count_cells_of_all(first.size());
     do {
       const auto round = static_cast<int>(rounds_.size());
       RoundReport report;
@@ -210,7 +186,7 @@ class Rounds {
       std::vector<CellName> left;
       if (round > 0) report.update = exchange_.update(wanted(own, here));
       const Zone zone(own, exchange_.known(), kKnownRings, round == 0 ? kRoomInBlocks : 0);
-      Construction::Entries entries = round == 0 ? own_cells() : find(here, zone, left);
+      Construction::Entries entries = round == 0 ? std::move(first) : find(here, zone, left);
       drop_sound(entries, zone);
       share_limit(!entries.empty());
       report.entries = entries.size();
@@ -227,6 +203,13 @@ class Rounds {
       here = plan_next(round, left, report);
       rounds_.push_back(report);
     } while (rounds_.back().deferred > 0 && !is_over_);
+  }
+
+  void count_cells_of_all(std::size_t own) {
+    std::array<std::uint64_t, 1> cells{own};
+    ranks_.sum(cells);
+    cells_of_all_ = static_cast<std::int64_t>(cells[0]);
+    cells_reported_ = stop_.num_cells();
   }
 
   // Divides the rest of the cell limit among the ranks that have work.
@@ -246,10 +229,13 @@ class Rounds {
     return cubes;
   }
 
-  Construction::Entries own_cells() {
-    Construction::Entries entries = construction_.all_cells();
-    std::erase_if(entries, [&](const auto& entry) { return !is_own(construction_.mesh().cell(entry.cell)); });
-    return entries;
+  Construction::Entries own_cells() const {
+    const Mesh& mesh = construction_.mesh();
+    return parallel_collect<Construction::Entries::value_type>(
+        mesh.cell_bound(), learner_.threads(), [&](std::size_t begin, std::size_t end, auto& own) {
+          for (auto c = static_cast<CellId>(begin); c < end; ++c)
+            if (mesh.cell(c).is_alive() && is_own(mesh.cell(c))) own.push_back({c, mesh.stamp(c)});
+        });
   }
 
   // Returns the cubes whose vertices must be known in a zone with these deferred cells.
@@ -292,7 +278,7 @@ class Rounds {
     Construction::Entries entries;
     for (const std::size_t i : along_curve(names)) {
       const CellName& name = names[i];
-      if (const auto cell = exchange_.find_cell(name.vertices)) {
+      if (const auto cell = learner_.find_cell(name.vertices)) {
         entries.push_back({*cell, mesh.stamp(*cell)});
       } else if (const Ball ball = ball_of(name); !zone.is_ball_known(ball.center, ball.radius_mm)) {
         left.push_back(name);
@@ -314,10 +300,15 @@ class Rounds {
                return mirror == kNoFacet || zone.is_ball_known(mesh.cell(cell_of(mirror)));
              });
     };
-    std::erase_if(entries, [&](const auto& entry) {
+    const auto is_dropped = [&](const auto& entry) {
       return !zone.may_read(mesh, mesh.cell(entry.cell)) && is_known(entry.cell) &&
              rules.is_sound(entry.cell);
-    });
+    };
+    entries = parallel_collect<Construction::Entries::value_type>(
+        entries.size(), learner_.threads(), [&](std::size_t begin, std::size_t end, auto& kept) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (!is_dropped(entries[i])) kept.push_back(entries[i]);
+        });
   }
 
   // Returns the cells that are left for PODM.
@@ -422,6 +413,7 @@ class Rounds {
   const TwoLevels levels_;
   Construction construction_;
   const CubeGrid grid_;
+  Learner learner_;
   VertexExchange exchange_;
   std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
   std::optional<Blocks> blocks_;
@@ -430,6 +422,7 @@ class Rounds {
   std::vector<std::uint32_t> num_waiting_;  // by cube: deferred cells on all ranks before the round
   std::vector<std::uint64_t> load_;         // by rank: deferred cells assigned to it
   std::vector<RoundReport> rounds_;
+  std::uint64_t num_seeds_ = 0;
   std::int64_t cells_of_all_ = 0;    // cells of the whole mesh before the round
   std::int64_t cells_reported_ = 0;  // number of this rank's added cells that the other ranks know
   bool is_over_ = false;             // the same on all ranks

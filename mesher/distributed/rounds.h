@@ -2,21 +2,23 @@
 // other ranks the vertices that it inserted and removed. (Feng, Chernikov, Chrisochoides, CAD 2018, use
 // leaves as tasks and send sub-meshes. Here zones tile space and vertices are sent.)
 //
-//   1  The first rank makes a coarse mesh, and all ranks get its vertices.
-//   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block. The rank refines the
-//      cells whose least vertices are in the block, by PODM alone or leaf by leaf first
-//      (leaves_of_zone.h). A cell that needs vertices outside is deferred.
-//   3  In later rounds zones surround the deferred cells (zones_of_round.h). They differ from round to
+//   1  Blocks divide space by predicted work.
+//   2  Each rank inserts the seeds in its block and around it, a coarse lattice (lattice_seeds.h). No vertex
+//      is sent, because all ranks compute the same seeds.
+//   3  In round 0 a rank's zone is its block. The rank refines the cells whose least vertices are in the
+//      block, by PODM alone or leaf by leaf first (leaves_of_zone.h). A cell that needs vertices outside is
+//      deferred.
+//   4  In later rounds zones surround the deferred cells (zones_of_round.h). They differ from round to
 //      round and become wider. When one zone fills space its rank knows all vertices and defers nothing;
 //      therefore the rounds end.
-//   4  At the end each rank learns what other ranks changed in its block and around it.
+//   5  At the end each rank learns what other ranks changed in its block and around it.
 #pragma once
 
 #include "algorithms/podm.h"
 #include "distributed/blocks.h"
 #include "distributed/communication.h"
 #include "distributed/spending.h"
-#include "distributed/vertex_exchange.h"
+#include "distributed/vertex_source.h"
 
 namespace podm {
 
@@ -36,14 +38,15 @@ struct DistributedRefinement {
   CubeGrid grid;
   std::vector<int> rank_of_cube;  ///< by cube: the rank of its block
   std::vector<RoundReport> rounds;
+  std::uint64_t seeds = 0;  ///< vertices that this rank inserted before round 0
   Update last_update;
-  /// This rank's time per phase: "initial", making or receiving the coarse mesh, and blocks; "refine", round
-  /// 0; "later", refining in later rounds; "exchange", everything else.
+  /// This rank's time per phase: "initial", blocks and seeds; "refine", round 0; "later", refining in later
+  /// rounds; "exchange", everything else.
   SpentByPhase spent = {};
 };
 
 struct DistributedOptions {
-  double initial_ratio = 4;    ///< bounds of the coarse mesh over the final ones
+  double initial_ratio = 4;    ///< as in LeafOptions
   std::uint64_t cut_seed = 0;  ///< draws the cuts between blocks; 0: cuts follow the predicted work
   Algorithm algorithm = Algorithm::kPodm;  ///< kPodm, or kPdr or kPdrPodm: leaves first, in round 0
   double leaf_size_mm = 0;                 ///< as in LeafOptions

@@ -84,10 +84,12 @@ class Merge {
       remove_received(rank);
     } else if (logged.kind == kMovedVertex) {
       move(rank);
+    } else if (logged.kind >= kSeed) {
+      seed(rank);
     } else if (logged.kind >= kReceivedInsertion && logged.kind < kReceivedRemoval) {
       insert_received(rank);
     } else {
-      apply(rank);
+      apply(rank, rank.next());
     }
   }
 
@@ -115,8 +117,20 @@ class Merge {
     give_number(rank);
   }
 
-  void apply(Reader& rank) {
+  void seed(Reader& rank) {
     LoggedOperation logged = rank.next();
+    rank.expect(step_of(logged.sequence) == 0, "a seed after the first step");
+    logged.kind -= kSeed;
+    if (const auto found = vertices_.find(point_of(logged)); found == vertices_.end()) {
+      apply(rank, logged);
+    } else {
+      rank.expect(found->second.kind == logged.kind, "a seed of another kind than another rank's");
+      give_number(rank);
+    }
+  }
+
+  // `logged` is the next entry of the rank's log, as an operation of the whole.
+  void apply(Reader& rank, LoggedOperation logged) {
     for (const std::uint32_t vertex : rank.removed()) {
       const auto found = vertices_.find(take_removed(rank, vertex));
       rank.expect(found != vertices_.end(), "removes a vertex that another rank has removed");

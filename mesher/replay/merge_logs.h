@@ -1,9 +1,10 @@
 // Merges the logs of ranks that share no memory into one: the serial run that they claim to equal.
 //
-// The first rank makes a coarse mesh. Then all ranks take steps together. In a step each rank either changes
-// the mesh within a part of space that no other rank changes in this step, or learns from other ranks what
-// they have changed. Operations of different ranks in one step therefore change no vertex in common, and any
-// order of them makes the same mesh. Here they are ordered by rank.
+// In the first step each rank inserts seeds around its part of space. Ranks insert the same seed if they
+// insert one at the same place; it counts once. Then all ranks take steps together. In a step each rank
+// either changes the mesh within a part of space that no other rank changes in this step, or learns from
+// other ranks what they have changed. Operations of different ranks in one step therefore change no vertex in
+// common, and any order of them makes the same mesh. Here they are ordered by rank.
 //
 // Each rank has its own numbers of vertices. In the whole a vertex is identified by its point: vertices that
 // exist at the same time have different points. A removed vertex may come back, therefore the step decides.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <ostream>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,12 @@ inline std::vector<NamedImage> images() {
                            [&](int, int, int) { return static_cast<int>(random() % 5); });
        }},
   };
+}
+
+inline LabelImage image_named(const std::string& name) {
+  for (const NamedImage& image : images())
+    if (name == image.name) return image.make();
+  throw std::runtime_error("no image " + name);
 }
 
 struct NamedAffine {

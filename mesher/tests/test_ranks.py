@@ -287,7 +287,7 @@ class Logs(OnRanks):
                     log.unlink()
 
     def test_a_run_that_is_stopped_equals_its_replay(self):
-        for most in 6000, 60000:  # in the coarse mesh, and after it
+        for most in 6000, 60000:  # with the seeds, and after them
             self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
             self.assert_replays(self.logs(3))
 
@@ -396,7 +396,7 @@ class EarlyEnds(OnRanks):
         self.assertLessEqual(self.last_record()["cells"], 60000)
 
     @slow
-    def test_the_coarse_mesh_is_not_measured_by_one_ranks_share(self):
+    def test_seeds_are_not_measured_by_one_ranks_share(self):
         self.assert_exit(self.mesh_in_process(64, "--radius", 8, "--max-elements", 60000), 0)
         self.assertLess(self.last_record()["cells"], 60000)
 
@@ -407,7 +407,7 @@ class EarlyEnds(OnRanks):
         self.addCleanup(process.kill)
         for line in process.stderr:
             share = re.match(r"refine +(\d+) %", line)
-            if share and int(share[1]) >= 10:  # after the coarse mesh: all ranks refine
+            if share and int(share[1]) >= 10:  # all ranks refine
                 children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
                 self.assertEqual(len(children), number)
                 return process, [int(child) for child in children]

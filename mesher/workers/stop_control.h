@@ -34,6 +34,8 @@ class StopControl {
   /// All stores together have `cells_of_all` cells. From now on this store may grow by one of `num_shares`
   /// equal shares of what the limit leaves. To be called between phases.
   void share_limit(std::int64_t cells_of_all, int num_shares);
+  /// The most cells of all stores together; 0: any number.
+  std::int64_t max_elements() const { return max_elements_; }
   /// The store has `more` additional cells.
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
   /// The number of cells added.

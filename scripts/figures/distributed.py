@@ -14,8 +14,9 @@ from . import scaling
 
 REFINING = ("initial", "refine", "later", "exchange")
 # Where the mean rank spends its time, in the order of the stack. Waiting and network are those of refinement without
-# the coarse mesh: the first rank makes it while the other ranks wait, and then sends it to them.
-PARTS = {"transform": "image transform", "initial": "coarse mesh", "learn": "learning it", "refine": "round 0",
+# what comes before round 0. There each rank inserts its seeds. In rows without seeds the first rank made a coarse mesh
+# while the other ranks waited, and then sent it to them.
+PARTS = {"transform": "image transform", "initial": "coarse mesh or seeds", "learn": "learning it", "refine": "round 0",
          "later": "later rounds", "exchange": "updates", "waiting": "waiting", "network": "network",
          "extract": "pieces"}
 OF_ROW = ["deferred_share", "imbalance", "cells_over_one_machine", "rank_bytes_per_cell"]
@@ -38,7 +39,9 @@ def of_row(row):
     made = {phase: mean([phase], "computing") for phase in REFINING}
     made.update({phase: mean([phase], *every) for phase in ("transform", "initial", "extract")})
     if not is_measured:
-        first = min(spent[0].get("initial", {}).get("computing_s", 0.0), made["initial"])
+        has_seeds = all("seed_vertices" in rank for rank in ranks["by_rank"])
+        computing = made["initial"] if has_seeds else spent[0].get("initial", {}).get("computing_s", 0.0)
+        first = min(computing, made["initial"])
         made.update(initial=first, learn=made["initial"] - first,
                     **{kind: mean(REFINING[1:], kind) for kind in every[1:]})
     rounds, asked = ranks["rounds"], row.get("asked", {}).get("target_elements")

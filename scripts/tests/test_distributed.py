@@ -62,6 +62,15 @@ class Rows(unittest.TestCase):
         self.assertAlmostEqual(line["learn"], (0.04 + 3 * 0.06) / 4 / 0.1 - 0.3)
         self.assertEqual((line["waiting"], line["network"]), (0, 0))
 
+    def test_seeds_are_nothing_to_be_learnt(self):
+        seeding = spent(initial=(0.02, 0.01, 0.0), refine=(0.1, 0.0, 0.0))
+        seeded = row(4, by_rank=[seeding] * 4)
+        for rank in seeded["ranks"]["by_rank"]:
+            rank["seed_vertices"] = 1000
+        line = table_of([row(1), seeded]).set_index("ranks").loc[4]
+        self.assertAlmostEqual(line["initial"], 0.3)
+        self.assertEqual(line["learn"], 0)
+
     def test_measured_efficiency_is_of_processor_seconds_and_waiting_does_not_count(self):
         waiting = spent(refine=0.1, exchange=(0.1, 99.0, 0.0))
         table = table_of([row(1, basis="measured"), row(2, by_rank=[waiting] * 2, basis="measured")]).set_index("ranks")

@@ -122,6 +122,7 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
                        {"cells", part.cells},
                        {"boundary_facets", part.boundary_facets},
                        {"store_cells", part.store_cells},
+                       {"seed_vertices", part.seeds},
                        {"peak_rss_bytes", memory_of(spent[rank])},
                        {"phases_s", part.phases_s},
                        {"spent", part.spent},

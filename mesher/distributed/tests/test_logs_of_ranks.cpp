@@ -87,7 +87,7 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   std::uint64_t num_received = 0;
   for (const LogOfRank& log : logged.logs)
     for (const LoggedOperation& entry : log.log.all.operations)
-      num_received += entry.kind >= kReceivedInsertion;
+      num_received += entry.kind >= kReceivedInsertion && entry.kind < kSeed;
   EXPECT_EQ(num_received > 0, GetParam().is_shared);
 }
 
@@ -121,7 +121,7 @@ std::vector<LoggedCase> logged_cases() {
   cases.push_back({"pdr", three_labels(), 1, 3, 2, Space::kRas, 0, true, Algorithm::kPdr});
   cases.push_back(
       {"stopped_in_leaves", ball(24, 9), 1.2, 3, 4, Space::kRas, 12000, true, Algorithm::kPdrPodm});
-  cases.push_back({"stopped_in_the_coarse_mesh", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000, false});
+  cases.push_back({"stopped_at_the_seeds", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000});
   cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
   return cases;
 }
@@ -183,6 +183,22 @@ TEST_F(SpoiltLogs, AreRefusedWithAReceivedVertexThatIsElsewhere) {
   EXPECT_GT(num_received, 5);
 }
 
+TEST_F(SpoiltLogs, AreRefusedWithASeedThatARankMakesLaterOrOfAnotherKind) {
+  const auto is_seed = [](const LoggedOperation& entry) { return entry.kind >= kSeed; };
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    logs_ = sound();
+    auto& operations = log(rank).operations;
+    ASSERT_GT(std::ranges::count_if(operations, is_seed), 10);
+    LoggedOperation& last = *std::find_if(operations.rbegin(), operations.rend(), is_seed);
+    last.sequence += std::uint64_t{1} << kBitsInStep;
+    EXPECT_NE(verdict().find("a seed after the first step"), std::string::npos) << verdict();
+  }
+  logs_ = sound();
+  for (LoggedOperation& entry : log(1).operations)
+    if (is_seed(entry)) entry.kind = kSeed + static_cast<std::uint32_t>(VertexKind::kIsosurface);
+  EXPECT_NE(verdict().find("a seed of another kind than another rank's"), std::string::npos) << verdict();
+}
+
 TEST_F(SpoiltLogs, DoNotPassWithoutAnOperation) {
   for (std::size_t rank = 0; rank < 3; ++rank) {
     for (const std::size_t entry : some_entries(rank, 0)) {
@@ -230,7 +246,7 @@ TEST_F(SpoiltLogs, AreRefusedWithTwoStepsSwapped) {
   for (std::uint64_t step = 2; step <= step_of(sound()[0].log.all.operations.back().sequence); ++step) {
     logs_ = sound();
     const auto is_received_in = [step](const LoggedOperation& entry) {
-      return step_of(entry.sequence) == step && entry.kind >= kReceivedInsertion;
+      return step_of(entry.sequence) == step && entry.kind >= kReceivedInsertion && entry.kind < kSeed;
     };
     if (std::ranges::none_of(log(0).operations, is_received_in)) continue;
     log(0) = with_steps_swapped(log(0), 1, step);

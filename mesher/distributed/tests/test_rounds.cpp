@@ -167,7 +167,7 @@ TEST(RoundsByLeaves, RefineMostInLeavesOfOneOctree) {
 
 TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
   const Case of{"", ball(24, 9), 1.2, 0, 3};
-  for (const std::uint64_t most_cells : {1000u, 4000u}) {  // in the coarse mesh, and in the first round
+  for (const std::uint64_t most_cells : {1000u, 4000u}) {  // with the seeds, and in the first round
     Ranks ranks(of, 1, {.max_elements = most_cells});
     std::uint64_t insertions = 0;
     for (int rank = 0; rank < 3; ++rank) {
@@ -209,12 +209,6 @@ TEST(DrawnBlocks, TileSpaceAndAreThinNowAndThen) {
   EXPECT_GT(num_thin, 10);
 }
 
-LabelImage image_named(const std::string& name) {
-  for (const NamedImage& image : images())
-    if (name == image.name) return image.make();
-  throw std::runtime_error("no image " + name);
-}
-
 std::vector<Case> cases() {
   std::vector<Case> cases;
   for (const int num_ranks : {1, 2, 3, 5, 8})
@@ -223,7 +217,7 @@ std::vector<Case> cases() {
   cases.push_back({"three_labels", image_named("three_labels_meeting"), 1, 0, 6});
   cases.push_back({"threads", image_named("three_labels_meeting"), 1, 0, 3, 2});
   cases.push_back({"anisotropic", image_named("anisotropic_ball"), 0.9, 0, 4, 1, 2});
-  cases.push_back({"no_coarser_mesh", ball(24, 9), 1.2, 0, 4, 1, 1});
+  cases.push_back({"no_coarser_leaves", ball(24, 9), 1.2, 0, 4, 1, 1});
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
     cases.push_back({"cuts_drawn_by_" + std::to_string(seed), ball(24, 9), 1.2, 0, 3 + static_cast<int>(seed),
                      1, seed % 2 == 0 ? 1.0 : 2.0, seed});

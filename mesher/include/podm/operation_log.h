@@ -27,8 +27,9 @@ inline constexpr std::uint32_t kMovedVertex = 0;
 
 /// Kinds of entries that are not operations. They log what a rank learns from other ranks between its own
 /// operations. kReceivedInsertion plus a VertexKind: a vertex exists. kReceivedRemoval: the removed vertex is
-/// gone.
-inline constexpr std::uint32_t kReceivedInsertion = 1u << 8, kReceivedRemoval = 1u << 9;
+/// gone. kSeed plus a VertexKind: a vertex exists in the first step. Each rank makes the seeds around its
+/// part of space by itself.
+inline constexpr std::uint32_t kReceivedInsertion = 1u << 8, kReceivedRemoval = 1u << 9, kSeed = 1u << 10;
 
 /// The high bits of a sequence number are the step, from 0. A run on one machine has only step 0.
 inline constexpr unsigned kBitsInStep = 40;

@@ -1,0 +1,146 @@
+#include "distributed/lattice_seeds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runtime/parallel_for.h"
+
+namespace podm {
+
+namespace {
+
+// The side of the largest leaf over the bound on the circumradius. Balls have up to 0.56 of a side. A side of
+// 2 radii makes 1.5 to 3 % more cells than a mesh without seeds has, 3 radii 0.02 %.
+constexpr double kSizeOverRadius = 3;
+constexpr double kJitter = 0.01;  // of the least side
+constexpr unsigned kMostDepth = 20;
+
+// (Steele, Lea, Flood, OOPSLA 2014: SplitMix.)
+double next_in_unit_range(std::uint64_t& state) {
+  std::uint64_t z = state += 0x9e3779b97f4a7c15u;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
+}
+
+double gap(double low, double high, double other_low, double other_high) {
+  return std::max({0.0, other_low - high, low - other_high});
+}
+
+}  // namespace
+
+// The root's side is a power of two times the least side of leaves, which are therefore as large as allowed
+// where the bound is least.
+LatticeSeeds::LatticeSeeds(const Problem& problem, const Box& clamp, std::size_t threads, double coarser)
+    : problem_(problem),
+      clamp_(clamp),
+      threads_(threads),
+      radii_(radii_of(problem)),
+      side_over_radius_(coarser * kSizeOverRadius) {
+  const double least_side_mm = side_over_radius_ * radii_.least;
+  const Vector extent = clamp.high - clamp.low;
+  root_side_mm_ = least_side_mm;
+  while (root_side_mm_ < std::max({extent.x, extent.y, extent.z})) root_side_mm_ *= 2;
+  const double half = root_side_mm_ / 2;
+  root_low_ = clamp.low + 0.5 * extent - Vector{half, half, half};
+  jitter_mm_ = kJitter * least_side_mm;
+}
+
+Box LatticeSeeds::box_of(const Node& node) const {
+  const double unit_mm = root_side_mm_ / (1u << kMostDepth), side = side_mm(node);
+  const Point low = root_low_ + unit_mm * Vector{1.0 * node.low[0], 1.0 * node.low[1], 1.0 * node.low[2]};
+  return {low, low + Vector{side, side, side}};
+}
+
+// Where the isosurface may pass, the least bound at the corners and at the center counts, or the largest of
+// the object if none of these points is inside.
+bool LatticeSeeds::is_leaf(const Node& node) const {
+  constexpr double kHalfDiagonal = 0.8660254037844387;
+  if (node.depth + 1 == kMostDepth) return true;
+  const double side = side_mm(node);
+  const auto& [low, high] = box_of(node);
+  const Point center = low + 0.5 * (high - low);
+  const LabelIndex label = problem_.isosurface.label_at(center);
+  const double reach = kHalfDiagonal * side;
+  if (problem_.isosurface.distance_lower_bound(center, reach) > reach)
+    return label == kBackground ||
+           side <= side_over_radius_ * std::sqrt(problem_.sizes.squared_radius(label, center));
+  double radius = label == kBackground ? radii_.most : radius_at(problem_, label, center);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Point p{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z};
+    const LabelIndex there = problem_.isosurface.label_at(p);
+    if (there != kBackground) radius = std::min(radius, radius_at(problem_, there, p));
+  }
+  return side <= side_over_radius_ * radius;
+}
+
+Point LatticeSeeds::point_of(MortonCode code) const {
+  const double unit_mm = root_side_mm_ / (1u << kMostDepth);
+  const GridPoint at = morton_point(code);
+  std::uint64_t state = code;
+  const double x = next_in_unit_range(state), y = next_in_unit_range(state), z = next_in_unit_range(state);
+  return root_low_ + unit_mm * Vector{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]} + jitter_mm_ * Vector{x, y, z};
+}
+
+// Descends level by level. Returns the corners and centers of the taken nodes within the clamp box, each
+// once.
+template <class FateOf>
+std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
+  constexpr std::size_t kLength = 64;
+  std::vector<Node> level{{{0, 0, 0}, 0}}, next;
+  std::vector<MortonCode> codes;
+  std::vector<Fate> fates;
+  for (; !level.empty(); level.swap(next)) {
+    fates.assign(level.size(), Fate::kSkipped);
+    parallel_for_ranges(level.size(), kLength, threads_,
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t i = begin; i < end; ++i) fates[i] = fate_of(level[i]);
+                        });
+    next.clear();
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      const auto& [low, depth] = level[i];
+      const std::uint32_t half = 1u << (kMostDepth - depth - 1);
+      const auto at = [&](unsigned corner, std::uint32_t step) {
+        return GridPoint{low[0] + (corner & 1) * step, low[1] + (corner >> 1 & 1) * step,
+                         low[2] + (corner >> 2) * step};
+      };
+      for (unsigned corner = 0; corner < 8 && fates[i] == Fate::kDivided; ++corner)
+        next.push_back({at(corner, half), depth + 1});
+      if (fates[i] != Fate::kTaken) continue;
+      for (unsigned corner = 0; corner < 8; ++corner) codes.push_back(morton_code(at(corner, 2 * half)));
+      codes.push_back(morton_code(at(7, half)));
+    }
+  }
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  std::vector<Point> points;
+  for (const MortonCode code : codes)
+    if (const Point p = point_of(code); is_in(clamp_, p)) points.push_back(p);
+  return points;
+}
+
+std::vector<Point> LatticeSeeds::in(const CubeSet& cubes) const {
+  const CubeCounts counts(cubes);
+  const double margin = 2 * jitter_mm_;
+  std::vector<Point> seeds = collect([&](const Node& node) {
+    const Box box = grown(box_of(node), margin);
+    if (!counts.meets(cubes.grid().place_of(box.low), cubes.grid().place_of(box.high))) return Fate::kSkipped;
+    return is_leaf(node) ? Fate::kTaken : Fate::kDivided;
+  });
+  std::erase_if(seeds, [&](const Point& p) { return !cubes.has(p); });
+  return seeds;
+}
+
+std::vector<Point> LatticeSeeds::sparse_around(const Box& box) const {
+  return collect([&](const Node& node) {
+    const Box its = box_of(node);
+    const double distance_mm = std::max({gap(its.low.x, its.high.x, box.low.x, box.high.x),
+                                         gap(its.low.y, its.high.y, box.low.y, box.high.y),
+                                         gap(its.low.z, its.high.z, box.low.z, box.high.z)});
+    if (is_in(box, its.low) && is_in(box, its.high)) return Fate::kSkipped;
+    return side_mm(node) <= distance_mm || is_leaf(node) ? Fate::kTaken : Fate::kDivided;
+  });
+}
+
+}  // namespace podm

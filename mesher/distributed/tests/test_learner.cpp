@@ -1,0 +1,148 @@
+// Threads that learn vertices together make the Delaunay triangulation of these vertices.
+#include "distributed/learner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+
+#include "delaunay/tests/cells_by_points.h"
+#include "delaunay/tests/point_sets.h"
+#include "delaunay/tests/triangulator.h"
+#include "delaunay/tests/validity.h"
+#include "image/foreground.h"
+#include "refine/virtual_box.h"
+#include "tests/images.h"
+#include "tests/scratch_folder.h"
+
+namespace podm::test {
+namespace {
+
+class Learners : public testing::Test {
+ protected:
+  // A rank's store, which is empty at first, and its learner.
+  struct Rank {
+    Rank(const Problem& problem, const CubeGrid& grid, int threads, OperationLogWriter* log = nullptr)
+        : team{.coordination = {.num_workers = threads}, .log = log},
+          construction(problem, clamp_box(problem.object, problem.delta_mm), team, stop),
+          learner(construction, grid) {}
+    Mesh& mesh() { return construction.mesh(); }
+
+    StopControl stop{{}, {}, [](std::uint64_t) {}};
+    Team team;
+    Construction construction;
+    Learner learner;
+  };
+
+  std::vector<LearntVertex> drawn_vertices(std::size_t count, std::uint64_t seed) const {
+    std::mt19937_64 random(seed);
+    const Box& box = problem_.object;
+    const auto draw = [&](double low, double high) {
+      return std::uniform_real_distribution(low, high)(random);
+    };
+    std::vector<LearntVertex> vertices;
+    for (std::size_t i = 0; i < count; ++i)
+      vertices.push_back(
+          {{draw(box.low.x, box.high.x), draw(box.low.y, box.high.y), draw(box.low.z, box.high.z)},
+           i % 3 == 0 ? VertexKind::kIsosurface : VertexKind::kCircumcenter});
+    return vertices;
+  }
+
+  // Every other vertex of the first half goes, the second half comes.
+  static std::vector<LearntVertex> changes_of(const std::vector<LearntVertex>& vertices) {
+    std::vector<LearntVertex> changes(vertices.begin() + static_cast<std::ptrdiff_t>(vertices.size() / 2),
+                                      vertices.end());
+    for (std::size_t i = 0; i < vertices.size() / 2; i += 2)
+      changes.push_back({vertices[i].point, VertexKind::kUnused});
+    return changes;
+  }
+
+  const LabelImage image_ = ball(20, 7);
+  const Isosurface isosurface_{image_, 1};
+  const Problem problem_{.isosurface = isosurface_,
+                         .object = foreground_bounds(image_),
+                         .delta_mm = 1,
+                         .sizes = SizeField(std::vector<double>(image_.labels.size(), 2.0)),
+                         .cell_capacity = 1 << 20};
+  const CubeGrid grid_{problem_.object, 2};
+};
+
+TEST_F(Learners, MakeTheTriangulationOfOneThreadOnAnyNumber) {
+  const std::vector<LearntVertex> vertices = drawn_vertices(16000, 1);
+  const std::vector<LearntVertex> first(vertices.begin(), vertices.begin() + 8000);
+  Rank alone(problem_, grid_, 1);
+  alone.learner.learn(first, kReceivedInsertion, nullptr);
+  alone.learner.learn(changes_of(vertices), kReceivedInsertion, nullptr);
+  std::string fault;
+  EXPECT_TRUE(is_valid(alone.mesh(), &fault)) << fault;
+  for (const int threads : {2, 3, 4}) {
+    Rank rank(problem_, grid_, threads);
+    rank.learner.learn(first, kReceivedInsertion, nullptr);
+    std::vector<CellId> made;
+    rank.learner.learn(changes_of(vertices), kReceivedInsertion, &made);
+    EXPECT_EQ(cells_by_points(rank.mesh()), cells_by_points(alone.mesh())) << threads << " threads";
+    // Every cell with a vertex of the second half was made by the second call.
+    std::sort(made.begin(), made.end());
+    EXPECT_GT(made.size(), 8000u);
+    for (VertexId v = 0; v < rank.mesh().vertex_bound(); ++v) EXPECT_EQ(rank.mesh().vertex(v).lock, 0u);
+  }
+}
+
+TEST_F(Learners, LogWhatTheyLearnInAnOrderThatCanBeRepeated) {
+  const std::vector<LearntVertex> vertices = drawn_vertices(16000, 2);
+  const ScratchFolder folder;
+  const std::string path = folder / "learner.log";
+  {
+    OperationLogWriter log(path);
+    Rank rank(problem_, grid_, 4, &log);
+    rank.learner.learn({vertices.begin(), vertices.begin() + 8000}, kReceivedInsertion, nullptr);
+    rank.learner.learn(changes_of(vertices), kReceivedInsertion, nullptr);
+    OperationLogHead head;
+    head.box = {0, 0, 0, 1, 1, 1};
+    log.finish(head);
+    log.publish();
+  }
+  const OperationBatch all = read_operation_log(path).all;
+  EXPECT_EQ(all.operations.size(), 16000u + 4000u);
+  std::map<std::uint32_t, Point> present;  // by vertex number; a number is used again once it is free
+  const std::uint32_t* removed = all.removed.data();
+  for (const LoggedOperation& entry : all.operations) {
+    const Point p{entry.point[0], entry.point[1], entry.point[2]};
+    if (entry.kind == kReceivedRemoval) {
+      ASSERT_EQ(present.at(*removed++), p);
+      present.erase(entry.vertex);
+    } else {
+      ASSERT_TRUE(present.emplace(entry.vertex, p).second);
+    }
+  }
+  EXPECT_EQ(present.size(), 12000u);
+}
+
+TEST_F(Learners, PassAFaultOfAThreadOn) {
+  std::vector<LearntVertex> vertices = drawn_vertices(8000, 3);
+  for (const int threads : {1, 4}) {
+    Rank rank(problem_, grid_, threads);
+    rank.learner.learn(vertices, kReceivedInsertion, nullptr);
+    std::vector<LearntVertex> changes = drawn_vertices(8000, 4);
+    changes[4321].kind = VertexKind::kUnused;  // no such vertex
+    EXPECT_THROW(rank.learner.learn(changes, kReceivedInsertion, nullptr), InternalError);
+  }
+}
+
+TEST_F(Learners, FindCellsByTheirVertices) {
+  Rank rank(problem_, grid_, 1);
+  rank.learner.learn(drawn_vertices(2000, 5), kReceivedInsertion, nullptr);
+  const Mesh& mesh = rank.mesh();
+  for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+    if (!mesh.cell(c).is_alive()) continue;
+    std::array<Point, 4> vertices;
+    for (std::size_t i = 0; i < 4; ++i) vertices[i] = mesh.point(mesh.cell(c).vertices[i]);
+    EXPECT_EQ(rank.learner.find_cell(vertices), c);
+    vertices[3] = vertices[3] + Vector{1e-6, 0, 0};
+    EXPECT_EQ(rank.learner.find_cell(vertices), std::nullopt);
+  }
+}
+
+}  // namespace
+}  // namespace podm::test
