@@ -272,7 +272,7 @@ void Learner::learn(const std::vector<LearntVertex>& changes, std::uint32_t logg
 
 // A thread takes a stretch of the curve at a time.
 void Learner::learn_on_threads(const Batch& batch, std::size_t begin, std::size_t end) {
-  constexpr std::size_t kStretch = 512, kLeastPerThread = 2 * kStretch;
+  constexpr std::size_t kStretch = 128, kLeastPerThread = 4 * kStretch;
   const std::size_t threads = std::min(together_.size(), (end - begin) / kLeastPerThread);
   if (threads < 2) return alone_->learn(batch, begin, end);
   FirstFault fault;

@@ -69,8 +69,8 @@ class Learners : public testing::Test {
 };
 
 TEST_F(Learners, MakeTheTriangulationOfOneThreadOnAnyNumber) {
-  const std::vector<LearntVertex> vertices = drawn_vertices(16000, 1);
-  const std::vector<LearntVertex> first(vertices.begin(), vertices.begin() + 8000);
+  const std::vector<LearntVertex> vertices = drawn_vertices(6000, 1);
+  const std::vector<LearntVertex> first(vertices.begin(), vertices.begin() + 3000);
   Rank alone(problem_, grid_, 1);
   alone.learner.learn(first, kReceivedInsertion, nullptr);
   alone.learner.learn(changes_of(vertices), kReceivedInsertion, nullptr);
@@ -84,19 +84,19 @@ TEST_F(Learners, MakeTheTriangulationOfOneThreadOnAnyNumber) {
     EXPECT_EQ(cells_by_points(rank.mesh()), cells_by_points(alone.mesh())) << threads << " threads";
     // Every cell with a vertex of the second half was made by the second call.
     std::sort(made.begin(), made.end());
-    EXPECT_GT(made.size(), 8000u);
+    EXPECT_GT(made.size(), 3000u);
     for (VertexId v = 0; v < rank.mesh().vertex_bound(); ++v) EXPECT_EQ(rank.mesh().vertex(v).lock, 0u);
   }
 }
 
 TEST_F(Learners, LogWhatTheyLearnInAnOrderThatCanBeRepeated) {
-  const std::vector<LearntVertex> vertices = drawn_vertices(16000, 2);
+  const std::vector<LearntVertex> vertices = drawn_vertices(6000, 2);
   const ScratchFolder folder;
   const std::string path = folder / "learner.log";
   {
     OperationLogWriter log(path);
     Rank rank(problem_, grid_, 4, &log);
-    rank.learner.learn({vertices.begin(), vertices.begin() + 8000}, kReceivedInsertion, nullptr);
+    rank.learner.learn({vertices.begin(), vertices.begin() + 3000}, kReceivedInsertion, nullptr);
     rank.learner.learn(changes_of(vertices), kReceivedInsertion, nullptr);
     OperationLogHead head;
     head.box = {0, 0, 0, 1, 1, 1};
@@ -104,7 +104,7 @@ TEST_F(Learners, LogWhatTheyLearnInAnOrderThatCanBeRepeated) {
     log.publish();
   }
   const OperationBatch all = read_operation_log(path).all;
-  EXPECT_EQ(all.operations.size(), 16000u + 4000u);
+  EXPECT_EQ(all.operations.size(), 6000u + 1500u);
   std::map<std::uint32_t, Point> present;  // by vertex number; a number is used again once it is free
   const std::uint32_t* removed = all.removed.data();
   for (const LoggedOperation& entry : all.operations) {
@@ -116,16 +116,16 @@ TEST_F(Learners, LogWhatTheyLearnInAnOrderThatCanBeRepeated) {
       ASSERT_TRUE(present.emplace(entry.vertex, p).second);
     }
   }
-  EXPECT_EQ(present.size(), 12000u);
+  EXPECT_EQ(present.size(), 4500u);
 }
 
 TEST_F(Learners, PassAFaultOfAThreadOn) {
-  std::vector<LearntVertex> vertices = drawn_vertices(8000, 3);
+  std::vector<LearntVertex> vertices = drawn_vertices(3000, 3);
   for (const int threads : {1, 4}) {
     Rank rank(problem_, grid_, threads);
     rank.learner.learn(vertices, kReceivedInsertion, nullptr);
-    std::vector<LearntVertex> changes = drawn_vertices(8000, 4);
-    changes[4321].kind = VertexKind::kUnused;  // no such vertex
+    std::vector<LearntVertex> changes = drawn_vertices(3000, 4);
+    changes[1234].kind = VertexKind::kUnused;  // no such vertex
     EXPECT_THROW(rank.learner.learn(changes, kReceivedInsertion, nullptr), InternalError);
   }
 }
