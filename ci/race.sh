@@ -36,8 +36,8 @@ cp build/bin/podm-verify "$build/bin/"  # podm looks for it here
 # Requires that a test program, run with a planted fault, ends with a finding of the sanitizer.
 expect_found() {
   fault=$1 program=$2 filter=$3
-  PODM_NO_LOCK_CONTRACT=1 PODM_PLANTED_FAULT=$fault "$build/bin/$program" --gtest_brief=1 --gtest_filter="$filter" \
-    > "$build/$fault.txt" 2>&1 && status=0 || status=$?
+  PODM_NO_LOCK_CONTRACT=1 PODM_PLANTED_FAULT=$fault timeout $most_seconds_to_find "$build/bin/$program" \
+    --gtest_brief=1 --gtest_filter="$filter" > "$build/$fault.txt" 2>&1 && status=0 || status=$?
   [ $status = $finding ] || { echo "$fault: not found, exit $status: $build/$fault.txt"; exit 1; }
   echo "== $fault: found by $program"
 }

@@ -1,5 +1,5 @@
 // Visibility walk to the cell that contains a point. In a Delaunay triangulation such walks end
-// (Edelsbrunner, Combinatorica 10 (1990) 251-260). The mesh must not change meanwhile.
+// (Edelsbrunner, Combinatorica 10 (1990) 251-260).
 #pragma once
 
 #include "delaunay/mesh.h"
@@ -10,7 +10,8 @@ namespace podm {
 /// the walk comes from; c itself if there is no such facet.
 CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous);
 
-/// Returns a cell that contains p, a point in the box or on its boundary. `from` must be alive.
+/// The mesh must not change meanwhile. Returns a cell that contains p, a point in the box or on its boundary.
+/// `from` must be alive.
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from);
 
 }  // namespace podm

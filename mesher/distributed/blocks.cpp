@@ -22,13 +22,6 @@ Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
   divide({grid.all(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
-// Each cut adds one block.
-Blocks::Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts)
-    : grid_(grid), block_of_(grid.num_cubes()) {
-  auto next = cuts.begin();
-  divide({grid.all(), 0, static_cast<int>(cuts.size()) + 1}, [&](const Part&) { return *next++; });
-}
-
 template <class CutOf>
 void Blocks::divide(const Part& part, const CutOf& cut_of) {
   if (part.num_blocks == 1) {
@@ -36,7 +29,6 @@ void Blocks::divide(const Part& part, const CutOf& cut_of) {
     return;
   }
   const Cut cut = cut_of(part);
-  cuts_.push_back(cut);
   Part lower = part, upper = part;
   lower.cubes.high[cut.axis] = upper.cubes.low[cut.axis] = part.cubes.low[cut.axis] + cut.cubes_below;
   lower.num_blocks = cut.blocks_below;

@@ -17,22 +17,16 @@ class Blocks {
   /// Draws the cuts at random, independent of the work: some blocks are one cube thin, some hold nearly all
   /// cubes. Each block has a cube if there are enough cubes.
   Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks);
-  /// The plane that cuts a part in two, and the number of the part's blocks below the plane.
-  struct Cut {
-    std::size_t axis;
-    int cubes_below, blocks_below;
-  };
-  /// Returns the cuts in order: first the cut of the whole, then all cuts of the part below, then those of
-  /// the part above.
-  const std::vector<Cut>& cuts() const { return cuts_; }
-  /// Rebuilds the blocks from their cuts.
-  Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts);
-
   int of(CubeId cube) const { return block_of_[cube]; }
   const std::vector<int>& ranks() const { return block_of_; }
 
  private:
   struct Part;
+  // The plane that cuts a part in two, and the number of the part's blocks below the plane.
+  struct Cut {
+    std::size_t axis;
+    int cubes_below, blocks_below;
+  };
   Cut cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const;
   static Cut drawn_cut(const Part& part, std::mt19937_64& random);
   template <class CutOf>
@@ -40,7 +34,6 @@ class Blocks {
 
   const CubeGrid& grid_;
   std::vector<int> block_of_;
-  std::vector<Cut> cuts_;
 };
 
 }  // namespace podm

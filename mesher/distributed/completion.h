@@ -7,9 +7,9 @@
 
 namespace podm {
 
-/// Learns vertices of the source until every cell with a vertex in `own` is a cell of the whole mesh, and so
-/// are its neighbours. The first update covers `rings` rings of cubes around `own`. `threads`: at least 1.
-/// Collective.
+/// Learns vertices of the source until every cell with a vertex in `own`, other than a corner of the virtual
+/// box, is a cell of the whole mesh, and so are its neighbours. The first update covers `rings` rings of
+/// cubes around `own`. `threads`: at least 1. Collective.
 Update complete(const Mesh& mesh, VertexSource& source, const CubeSet& own, int rings, std::size_t threads,
                 Communication& ranks);
 

@@ -147,7 +147,7 @@ class CubeSet {
 class CubeCounts {
  public:
   explicit CubeCounts(const CubeSet& set);
-  /// Return true if the set holds all cubes from `low` to `high`, or any of them.
+  /// covers() returns true if the set holds all cubes from `low` to `high`, meets() if it holds any of them.
   bool covers(const CubePlace& low, const CubePlace& high) const {
     return count(low, high) ==
            std::int64_t{high[0] - low[0] + 1} * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);

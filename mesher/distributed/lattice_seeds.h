@@ -2,19 +2,22 @@
 // compute the vertices of any part of space, so none has to be sent.
 //
 // An octree divides a cube around the object. A cube of it is a leaf if its side is at most kSizeOverRadius
-// times the bound on the circumradius there, or if it is background and the isosurface is farther than its
-// corners. This depends on the cube and on the image alone, so all ranks agree. The seeds are the corners and
-// the centers of the leaves: a body-centered cubic lattice where leaves are equal. A corner or center of a
-// cube that is no leaf is a corner of a smaller cube, and therefore a seed as well. A rank may therefore end
-// the division far from its block, and has fewer seeds there, but no other ones.
+// times the bound on the circumradius there. It is also a leaf if the isosurface is farther than its corners
+// and its label is unbounded, or background. This depends on the cube and on the image alone, so all ranks
+// agree. The seeds are the corners and the centers of the leaves: a body-centered cubic lattice where leaves
+// are equal. A corner or center of a cube that is no leaf is a corner of a smaller cube, and therefore a seed
+// as well. A rank may therefore end the division far from its block, and has fewer seeds there, but no other
+// ones.
 //
 //   Covering. Each point of a leaf with side S is within sqrt(5) / 4 S of a corner or of the center. The
 //   circumball of a cell has no seed in it. If its center is in a leaf, its radius is therefore at most 0.56
-//   S plus the jitter, whatever the sizes of the leaves around it.
-//   Spacing. In a leaf the center is sqrt(3) / 2 S from the corners. A corner of a smaller leaf that touches
-//   a leaf of side S is at least S / 2 from its center. Seeds are therefore at least sqrt(3) / 2 of the least
-//   side apart, up to the jitter. With kSizeOverRadius = 3 this is more than any rule keeps (rules.h, I3).
-//   R6 removes seeds near the isosurface, as it removes circumcenters.
+//   S plus the jitter, whatever the sizes of the leaves around it. Leaves at the faces of the clamp box lack
+//   the seeds beyond it, and have larger balls. No proof rests on the size of balls: a rank inserts seeds
+//   until the cells at its block are known (completion.h). Spacing. In a leaf the center is sqrt(3) / 2 S
+//   from the corners. A corner of a smaller leaf that touches a leaf of side S is at least S / 2 from its
+//   center. Seeds are therefore at least sqrt(3) / 2 of the least side apart, up to the jitter. With
+//   kSizeOverRadius = 3 this is more than I3 requires (rules.h). R6 removes seeds near the isosurface, as it
+//   removes circumcenters.
 //
 // Each seed is moved by a small pseudo-random distance. Lattice points are degenerate: their conflict tests
 // would be decided in exact arithmetic.
@@ -38,7 +41,7 @@ class LatticeSeeds {
 
   /// Returns all seeds in these cubes.
   std::vector<Point> in(const CubeSet& cubes) const;
-  /// Returns some seeds outside the box. The farther they are from it, the fewer.
+  /// Returns some seeds, the fewer the farther they are from the box, and few of those in it.
   std::vector<Point> sparse_around(const Box& box) const;
 
  private:

@@ -1,15 +1,14 @@
 #include "distributed/learner.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <exception>
-#include <mutex>
+#include <thread>
 #include <utility>
 
 #include "delaunay/lock_contract.h"
 #include "delaunay/walk.h"
 #include "podm/errors.h"
+#include "runtime/first_fault.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -24,26 +23,6 @@ std::uint64_t hash_of(const Point& p) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
   return (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
 }
-
-// The first exception that a thread throws.
-class FirstFault {
- public:
-  void note() {
-    const std::scoped_lock lock(mutex_);
-    if (!fault_) fault_ = std::current_exception();
-    has_fault_.store(true, std::memory_order_relaxed);
-  }
-  /// Relaxed: a thread that sees the fault late only does more work.
-  bool is_noted() const { return has_fault_.load(std::memory_order_relaxed); }
-  void rethrow() const {
-    if (fault_) std::rethrow_exception(fault_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::exception_ptr fault_;
-  std::atomic<bool> has_fault_ = false;
-};
 
 }  // namespace
 
@@ -62,9 +41,13 @@ class Learner::OnThread {
 
   /// Makes the changes order[begin..end) of the batch. Those that meet another thread's lock are put off.
   void learn(const Batch& batch, std::size_t begin, std::size_t end) try {
-    for (std::size_t i = begin; i < end; ++i)
-      if (!learn(batch.changes[batch.order[i]], batch.logged_kind)) put_off_.push_back(batch.order[i]);
-    if (unlogged_.operations.size() >= kEntriesToFlush) flush_log();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!learn(batch.changes[batch.order[i]], batch.logged_kind)) {
+        put_off_.push_back(batch.order[i]);
+        std::this_thread::yield();  // the next change is near, and the other thread may still hold its locks
+      }
+      if (unlogged_.operations.size() >= kEntriesToFlush) flush_log();
+    }
   } catch (...) {
     operation_.rollback();
     operation_.release();
@@ -87,7 +70,7 @@ class Learner::OnThread {
  private:
   static constexpr std::size_t kEntriesToFlush = 4096;
 
-  // False: another thread holds a lock.
+  // False: another thread is in the way.
   bool learn(const LearntVertex& change, std::uint32_t logged_kind) {
     [[maybe_unused]] const AttemptScope scope(operation_.locks());
     const bool is_learnt = walk_to(change.point) && carry_out(change);
@@ -134,11 +117,14 @@ class Learner::OnThread {
     return false;
   }
 
-  // Reserves a cell that contains p. False: another thread holds a lock, or has replaced the next cell.
+  // Reserves a cell that contains p. False: another thread holds a lock, or has replaced the next cell. A
+  // walk does not go back at once. Cells around may have been replaced meanwhile, also by cells of the same
+  // number. Therefore the last cell is looked at once more from all sides.
   bool walk_to(const Point& p) {
     if (!reserve_start()) return false;
     for (CellId previous = near_;;) {
-      const CellId next = next_towards(mesh_, p, near_, previous);
+      CellId next = next_towards(mesh_, p, near_, previous);
+      if (next == near_ && Locks::kIsShared) next = next_towards(mesh_, p, near_, near_);
       if (next == near_) return true;
       const std::uint16_t stamp = mesh_.stamp(next);
       operation_.release();
@@ -274,17 +260,12 @@ void Learner::learn(const std::vector<LearntVertex>& changes, std::uint32_t logg
 void Learner::learn_on_threads(const Batch& batch, std::size_t begin, std::size_t end) {
   constexpr std::size_t kStretch = 128, kLeastPerThread = 4 * kStretch;
   const std::size_t threads = std::min(together_.size(), (end - begin) / kLeastPerThread);
-  if (threads < 2) return alone_->learn(batch, begin, end);
+  if (threads < 2) return learn_alone(batch, begin, end);
   FirstFault fault;
   for (std::size_t t = 0; t < threads; ++t) together_[t]->start_at(alone_->near());
   parallel_for_ranges(end - begin, kStretch, threads,
                       [&](std::size_t from, std::size_t to, std::size_t thread) {
-                        if (fault.is_noted()) return;
-                        try {
-                          together_[thread]->learn(batch, begin + from, begin + to);
-                        } catch (...) {
-                          fault.note();
-                        }
+                        fault.guard([&] { together_[thread]->learn(batch, begin + from, begin + to); });
                       });
   fault.rethrow();
   Batch rest{batch.changes, {}, batch.logged_kind};
@@ -293,8 +274,14 @@ void Learner::learn_on_threads(const Batch& batch, std::size_t begin, std::size_
     const std::vector<std::size_t> put_off = together_[t]->take_put_off();
     rest.order.insert(rest.order.end(), put_off.begin(), put_off.end());
   }
+  num_put_off_ += rest.order.size();
   alone_->start_at(together_[0]->near());
-  alone_->learn(rest, 0, rest.order.size());
+  learn_alone(rest, 0, rest.order.size());
+}
+
+void Learner::learn_alone(const Batch& batch, std::size_t begin, std::size_t end) {
+  alone_->learn(batch, begin, end);
+  if (!alone_->take_put_off().empty()) throw InternalError("a vertex was not learnt");
 }
 
 std::optional<CellId> Learner::find_cell(const std::array<Point, 4>& vertices) {

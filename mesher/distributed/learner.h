@@ -40,6 +40,8 @@ class Learner {
   /// Inserts and removes these vertices. Insertions are logged as `logged_kind` plus the VertexKind. Adds the
   /// new cells to `made`, if given; some more than once, and including cells that die again.
   void learn(const std::vector<LearntVertex>& changes, std::uint32_t logged_kind, std::vector<CellId>* made);
+  /// The number of changes so far that one thread made after the others.
+  std::uint64_t num_put_off() const { return num_put_off_; }
   /// Returns the cell of the store that has these vertices, if there is one.
   std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
 
@@ -51,11 +53,13 @@ class Learner {
   std::vector<std::size_t> in_order(const std::vector<LearntVertex>& changes,
                                     std::vector<std::size_t>& round_ends) const;
   void learn_on_threads(const Batch& batch, std::size_t begin, std::size_t end);
+  void learn_alone(const Batch& batch, std::size_t begin, std::size_t end);
 
   Mesh& mesh_;
   const CubeGrid& grid_;
   OperationLogWriter* log_;
   std::size_t threads_;
+  std::uint64_t num_put_off_ = 0;
   std::unique_ptr<OnThread<NoLocks>> alone_;
   std::vector<std::unique_ptr<OnThread<VertexLocks>>> together_;  // empty if there is one thread
 };

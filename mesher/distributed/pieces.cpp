@@ -8,6 +8,8 @@
 #include "geometry/point_hash.h"
 #include "podm/errors.h"
 #include "run/extract_mesh.h"
+#include "runtime/parallel_collect.h"
+#include "runtime/shared_word.h"
 
 namespace podm {
 
@@ -27,15 +29,15 @@ class PieceOfMesh {
         mesh_(*refined.refinement.mesh),
         isosurface_(isosurface),
         space_(space),
-        threads_(threads),
+        threads_(num_threads(threads)),
         ranks_(ranks) {}
 
   MeshPiece operator()(std::uint64_t& facets_off_isosurface) {
     is_own_vertex_.resize(mesh_.vertex_bound());
-    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v)
-      is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank();
+    in_parallel(mesh_.vertex_bound(),
+                [&](std::uint32_t v) { is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank(); });
     agree_on_centers();
-    label_cells(mesh_, isosurface_, threads_);
+    label_cells(mesh_, isosurface_, static_cast<int>(threads_));
     choose_cells();
     MeshPiece piece;
     piece.rank = ranks_.rank();
@@ -45,7 +47,8 @@ class PieceOfMesh {
     own_numbers_ = std::vector<std::uint64_t>();
     is_used_ = is_own_vertex_ = std::vector<std::uint8_t>();
     const auto is_chosen = [this](CellId c) { return is_own_cell_[c] != 0; };
-    piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_chosen);
+    piece.mesh = extract_mesh(mesh_, isosurface_, space_, static_cast<int>(threads_), facets_off_isosurface,
+                              is_chosen);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());
     std::tie(piece.first_facet, piece.total_facets) = sums_of(piece.mesh.facets.size());
     return piece;
@@ -64,20 +67,30 @@ class PieceOfMesh {
             std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})};
   }
 
+  // Calls visit(id) for the ids below `bound`, on all threads.
+  template <class Visit>
+  void in_parallel(std::size_t bound, const Visit& visit) const {
+    parallel_for_ranges(bound, kLength, threads_, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) visit(static_cast<std::uint32_t>(i));
+    });
+  }
+
   // Makes the centers and labels of shared cells equal on all ranks. This rank reads cells with a vertex in
   // its part of space, and their neighbours. If another rank reads such a cell, too, then the cell has
   // vertices of both parts, or a neighbour of it has: a cell and its neighbour share three vertices.
   void agree_on_centers() {
-    std::vector<CellId> shared;
-    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
-      if (!mesh_.cell(c).is_alive() || !is_mixed(c)) continue;
-      shared.push_back(c);
-      for (const FacetId mirror : mesh_.cell(c).mirrors)
-        if (mirror != kNoFacet) shared.push_back(cell_of(mirror));
-    }
+    auto shared = parallel_collect<CellId>(
+        mesh_.cell_bound(), threads_, [&](std::size_t begin, std::size_t end, std::vector<CellId>& found) {
+          for (auto c = static_cast<CellId>(begin); c < end; ++c) {
+            if (!mesh_.cell(c).is_alive() || !is_mixed(c)) continue;
+            found.push_back(c);
+            for (const FacetId mirror : mesh_.cell(c).mirrors)
+              if (mirror != kNoFacet) found.push_back(cell_of(mirror));
+          }
+        });
     std::sort(shared.begin(), shared.end());
     shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-    for (const CellId c : shared) mesh_.make_canonical(c);
+    in_parallel(shared.size(), [&](std::uint32_t i) { mesh_.make_canonical(shared[i]); });
   }
 
   int num_own_vertices(CellId c) const {
@@ -103,22 +116,38 @@ class PieceOfMesh {
   void choose_cells() {
     is_own_cell_.assign(mesh_.cell_bound(), 0);
     is_used_.assign(mesh_.vertex_bound(), 0);
-    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
-      if (mesh_.label(c) == kBackground) continue;
-      if (!is_own(c)) continue;
+    in_parallel(mesh_.cell_bound(), [&](CellId c) {
+      if (mesh_.label(c) == kBackground || !is_own(c)) return;
       is_own_cell_[c] = 1;
-      for (const VertexId v : mesh_.cell(c).vertices) is_used_[v] = 1;
-    }
+      // Relaxed: all threads write the same value, which is read after they end.
+      for (const VertexId v : mesh_.cell(c).vertices)
+        store(is_used_[v], std::uint8_t{1}, std::memory_order_relaxed);
+    });
   }
+
+  // A used vertex of another rank's part of space, and its place among the used vertices.
+  struct Foreign {
+    std::size_t place;
+    VertexId vertex;
+    std::size_t rank;
+  };
 
   // Numbers the vertices used here, in the order of their ids. The rank whose part of space holds a vertex
   // numbers it if this or another rank uses it. The other ranks request the number by coordinates.
   void number_vertices(MeshPiece& piece) {
-    const auto self = static_cast<std::size_t>(ranks_.rank());
+    const auto used = parallel_collect<VertexId>(
+        is_used_.size(), threads_, [&](std::size_t begin, std::size_t end, std::vector<VertexId>& found) {
+          for (auto v = static_cast<VertexId>(begin); v < end; ++v)
+            if (is_used_[v] != 0) found.push_back(v);
+        });
+    const auto foreign = parallel_collect<Foreign>(
+        used.size(), threads_, [&](std::size_t begin, std::size_t end, std::vector<Foreign>& found) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (const VertexId v = used[i]; is_own_vertex_[v] == 0)
+              found.push_back({i, v, static_cast<std::size_t>(rank_of(mesh_.point(v)))});
+        });
     std::vector<std::vector<Point>> wanted(static_cast<std::size_t>(ranks_.size()));
-    for_each_used([&](VertexId, const Point& p, std::size_t rank) {
-      if (rank != self) wanted[rank].push_back(p);
-    });
+    for (const Foreign& one : foreign) wanted[one.rank].push_back(mesh_.point(one.vertex));
     const std::vector<Bytes> asked = ranks_.all_to_all(messages_of(wanted));
     const ByPoint<Number> number_of = number_own(asked);
     std::vector<std::vector<Number>> answers(asked.size());
@@ -127,13 +156,15 @@ class PieceOfMesh {
     std::vector<std::vector<Number>> numbers;
     for (const Bytes& message : ranks_.all_to_all(messages_of(answers)))
       numbers.push_back(values_of<Number>(message));
+    piece.vertex_ids.resize(used.size());
+    piece.owns_vertex.assign(used.size(), 1);
+    in_parallel(used.size(), [&](std::uint32_t i) { piece.vertex_ids[i] = own_numbers_[used[i]]; });
     std::vector<std::size_t> next(numbers.size());
-    for_each_used([&](VertexId v, const Point&, std::size_t rank) {
-      const Number number =
-          rank == self ? Number{own_numbers_[v], ranks_.rank()} : numbers[rank][next[rank]++];
-      piece.vertex_ids.push_back(number.id);
-      piece.owns_vertex.push_back(number.owner == ranks_.rank());
-    });
+    for (const Foreign& one : foreign) {
+      const Number& number = numbers[one.rank][next[one.rank]++];
+      piece.vertex_ids[one.place] = number.id;
+      piece.owns_vertex[one.place] = number.owner == ranks_.rank();
+    }
     piece.total_vertices = total_vertices_;
   }
 
@@ -144,33 +175,29 @@ class PieceOfMesh {
     for (std::size_t rank = 0; rank < asked.size(); ++rank)
       for (const Point& p : values_of<Point>(asked[rank]))
         number_of.try_emplace(p, Number{kNoNumber, static_cast<std::int64_t>(rank)});
-    own_numbers_.assign(mesh_.vertex_bound(), kNoNumber);
-    std::uint64_t count = 0;
-    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
-      const Vertex& vertex = mesh_.vertex(v);
-      if (vertex.kind == VertexKind::kUnused || rank_of(vertex.point) != ranks_.rank()) continue;
-      if (is_used_[v] != 0 || number_of.contains(vertex.point)) own_numbers_[v] = count++;
-    }
-    const auto [first, total] = sums_of(count);
+    const auto numbered = parallel_collect<VertexId>(
+        mesh_.vertex_bound(), threads_,
+        [&](std::size_t begin, std::size_t end, std::vector<VertexId>& found) {
+          for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
+            if (is_own_vertex_[v] == 0 || mesh_.vertex(v).kind == VertexKind::kUnused) continue;
+            if (is_used_[v] != 0 || number_of.contains(mesh_.point(v))) found.push_back(v);
+          }
+        });
+    const auto [first, total] = sums_of(numbered.size());
     total_vertices_ = total;
-    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
-      if (own_numbers_[v] == kNoNumber) continue;
-      own_numbers_[v] += first;
+    own_numbers_.assign(mesh_.vertex_bound(), kNoNumber);
+    in_parallel(numbered.size(), [&, first = first](std::uint32_t i) {
+      const VertexId v = numbered[i];
+      own_numbers_[v] = first + i;
       const auto found = number_of.find(mesh_.point(v));
-      if (found != number_of.end())
-        found->second = {own_numbers_[v], is_used_[v] != 0 ? ranks_.rank() : found->second.owner};
-    }
+      if (found == number_of.end()) return;
+      found->second.id = own_numbers_[v];
+      if (is_used_[v] != 0) found->second.owner = ranks_.rank();
+    });
     for (const auto& number : number_of)
       if (number.second.id == kNoNumber)
         throw InternalError("another rank uses a vertex that the rank of its part of space lacks");
     return number_of;
-  }
-
-  // Calls visit(id, point, rank it belongs to), in the order of ids.
-  template <class Visit>
-  void for_each_used(const Visit& visit) const {
-    for (VertexId v = 0; v < is_used_.size(); ++v)
-      if (is_used_[v] != 0) visit(v, mesh_.point(v), static_cast<std::size_t>(rank_of(mesh_.point(v))));
   }
 
   template <class Value>
@@ -186,12 +213,13 @@ class PieceOfMesh {
   }
 
   static constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
+  static constexpr std::size_t kLength = 1 << 14;  // ids that a thread takes at a time
 
   DistributedRefinement& refined_;
   Mesh& mesh_;
   const Isosurface& isosurface_;
   Space space_;
-  int threads_;
+  std::size_t threads_;
   Communication& ranks_;
   std::vector<std::uint8_t> is_own_vertex_, is_own_cell_, is_used_;  // by id in the store
   std::vector<std::uint64_t> own_numbers_;                           // by id in the store

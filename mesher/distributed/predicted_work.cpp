@@ -1,5 +1,6 @@
 #include "distributed/predicted_work.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

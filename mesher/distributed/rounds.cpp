@@ -139,9 +139,10 @@ class Rounds {
 
   // Returns how much coarser seeds have to be, a power of two, for their cells to be at most half of the
   // limit.
-  double seeds_within_limit() const {
+  // A run that is over gets the fewest.
+  double seeds_within_limit() {
     constexpr double kCellsPerSeed = 7, kMost = 1024;
-    double coarser = 1;
+    double coarser = is_over_anywhere() ? kMost : 1;
     for (; stop_.max_elements() > 0 && coarser < kMost; coarser *= 2) {
       const LatticeSeeds seeds(problem_, levels_.clamp, learner_.threads(), coarser);
       std::array<std::uint64_t, 1> num_seeds{seeds.in(block()).size()};
@@ -161,13 +162,18 @@ class Rounds {
     exchange_.begin(blocks_->ranks(), seeding.known());
   }
 
-  // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex.
+  // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex. The
+  // corners of the virtual box count only in cells that have no other vertices, because no rank is sure to
+  // have all cells around such a corner.
   bool is_own(const Cell& cell) const {
     const Mesh& mesh = construction_.mesh();
-    Point least = mesh.point(cell.vertices[0]);
-    for (const VertexId v : cell.vertices)
-      if (lexicographically_less(mesh.point(v), least)) least = mesh.point(v);
-    return blocks_->of(grid_.cube_at(least)) == ranks_.rank();
+    const auto is_corner = [&](VertexId v) { return mesh.vertex(v).kind == VertexKind::kBox; };
+    const VertexId least =
+        *std::min_element(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v, VertexId w) {
+          if (is_corner(v) != is_corner(w)) return is_corner(w);
+          return lexicographically_less(mesh.point(v), mesh.point(w));
+        });
+    return blocks_->of(grid_.cube_at(mesh.point(least))) == ranks_.rank();
   }
 
   // Refines until no cell waits, or the run is over.

@@ -19,7 +19,7 @@ class VertexExchange : public VertexSource {
 
   /// Notes the first writer of every cube, and the cubes of which this rank has all vertices.
   void begin(const std::vector<int>& writer_of_cube, const CubeSet& known);
-  /// Notes that from now on this rank has the current vertices of the cube.
+  /// Notes that from now on the given rank has the current vertices of the cube.
   void note_writer(CubeId cube, int rank);
 
   CubeSet known() const override;

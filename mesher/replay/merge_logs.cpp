@@ -110,6 +110,7 @@ class Merge {
 
   void insert_received(Reader& rank) {
     const LoggedOperation& logged = rank.next();
+    rank.expect(logged.num_removed == 0, "a received vertex removes another one");
     const auto found = vertices_.find(point_of(logged));
     rank.expect(found != vertices_.end(), "receives a vertex that no rank has inserted");
     rank.expect(found->second.kind == logged.kind - kReceivedInsertion,
@@ -120,6 +121,7 @@ class Merge {
   void seed(Reader& rank) {
     LoggedOperation logged = rank.next();
     rank.expect(step_of(logged.sequence) == 0, "a seed after the first step");
+    rank.expect(logged.num_removed == 0, "a seed removes a vertex");
     logged.kind -= kSeed;
     if (const auto found = vertices_.find(point_of(logged)); found == vertices_.end()) {
       apply(rank, logged);
@@ -167,8 +169,8 @@ class Merge {
 // Checks that all logs are of one run, with one log per rank. They are sorted by rank.
 void expect_one_run(const std::vector<LogOfRank>& logs) {
   const auto run_of = [](const OperationLogHead& head) {
-    return std::tie(head.num_ranks, head.box, head.image_sha256, head.space, head.mesh_sha256,
-                    head.mesh_hash);
+    return std::tie(head.num_ranks, head.box, head.image_sha256, head.space, head.mesh_sha256, head.mesh_hash,
+                    head.smoothing_mm);
   };
   const LogOfRank& first = logs.front();
   for (std::size_t i = 0; i < logs.size(); ++i) {

@@ -1,7 +1,7 @@
 // Merges the logs of ranks that share no memory into one: the serial run that they claim to equal.
 //
-// In the first step each rank inserts seeds around its part of space. Ranks insert the same seed if they
-// insert one at the same place; it counts once. Then all ranks take steps together. In a step each rank
+// In the first step each rank inserts seeds in and around its part of space, and some farther away. A seed
+// may be in several logs; the whole has it once. Then all ranks take steps together. In a step each rank
 // either changes the mesh within a part of space that no other rank changes in this step, or learns from
 // other ranks what they have changed. Operations of different ranks in one step therefore change no vertex in
 // common, and any order of them makes the same mesh. Here they are ordered by rank.
@@ -9,7 +9,8 @@
 // Each rank has its own numbers of vertices. In the whole a vertex is identified by its point: vertices that
 // exist at the same time have different points. A removed vertex may come back, therefore the step decides.
 // Everything that a rank has learnt is compared with the whole as it was at that time. A rank that received
-// wrong data is therefore found, even if the wrong data had no effect.
+// wrong data is therefore found, even if the wrong data had no effect. Seeds are no such data: a rank that
+// lacks a seed of another rank, or has one more, is found only if the mesh differs from its replay.
 #pragma once
 
 #include <string>

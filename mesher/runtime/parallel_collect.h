@@ -4,20 +4,23 @@
 #include <cstddef>
 #include <vector>
 
+#include "runtime/first_fault.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
 
 /// Calls collect(begin, end, list) for consecutive ranges of [0, size), on `threads` threads, and returns all
 /// lists, one after the other in the order of the ranges. The result does not depend on the number of
-/// threads. `collect` must not throw.
+/// threads. Throws the first exception that collect() throws.
 template <class Item, class Collect>
 std::vector<Item> parallel_collect(std::size_t size, std::size_t threads, const Collect& collect) {
   constexpr std::size_t kLength = 1 << 14;
   std::vector<std::vector<Item>> lists((size + kLength - 1) / kLength);
+  FirstFault fault;
   parallel_for_ranges(size, kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-    collect(begin, end, lists[begin / kLength]);
+    fault.guard([&] { collect(begin, end, lists[begin / kLength]); });
   });
+  fault.rethrow();
   std::vector<Item> all;
   std::size_t num_items = 0;
   for (const auto& list : lists) num_items += list.size();

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <map>
 #include <random>
+#include <set>
 
 #include "delaunay/tests/cells_by_points.h"
 #include "delaunay/tests/point_sets.h"
@@ -49,6 +50,22 @@ class Learners : public testing::Test {
     return vertices;
   }
 
+  static void expect_lists_new_cells(const Mesh& mesh, const std::vector<LearntVertex>& learnt,
+                                     std::vector<CellId> made) {
+    std::set<std::array<double, 3>> points;
+    for (const LearntVertex& vertex : learnt) points.insert({vertex.point.x, vertex.point.y, vertex.point.z});
+    std::sort(made.begin(), made.end());
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      const Cell& cell = mesh.cell(c);
+      if (!cell.is_alive()) continue;
+      const bool is_new = std::any_of(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v) {
+        const Point& p = mesh.point(v);
+        return points.contains({p.x, p.y, p.z});
+      });
+      EXPECT_TRUE(!is_new || std::binary_search(made.begin(), made.end(), c)) << "cell " << c;
+    }
+  }
+
   // Every other vertex of the first half goes, the second half comes.
   static std::vector<LearntVertex> changes_of(const std::vector<LearntVertex>& vertices) {
     std::vector<LearntVertex> changes(vertices.begin() + static_cast<std::ptrdiff_t>(vertices.size() / 2),
@@ -82,11 +99,27 @@ TEST_F(Learners, MakeTheTriangulationOfOneThreadOnAnyNumber) {
     std::vector<CellId> made;
     rank.learner.learn(changes_of(vertices), kReceivedInsertion, &made);
     EXPECT_EQ(cells_by_points(rank.mesh()), cells_by_points(alone.mesh())) << threads << " threads";
-    // Every cell with a vertex of the second half was made by the second call.
-    std::sort(made.begin(), made.end());
-    EXPECT_GT(made.size(), 3000u);
-    for (VertexId v = 0; v < rank.mesh().vertex_bound(); ++v) EXPECT_EQ(rank.mesh().vertex(v).lock, 0u);
+    EXPECT_TRUE(is_valid(rank.mesh(), &fault)) << fault;
+    expect_lists_new_cells(rank.mesh(), {vertices.begin() + 3000, vertices.end()}, std::move(made));
   }
+}
+
+// Another worker holds all vertices, so that every change has to wait for the end of its round.
+TEST_F(Learners, MakeChangesThatMeetALockInTheEnd) {
+  const std::vector<LearntVertex> vertices = drawn_vertices(6000, 6);
+  const std::vector<LearntVertex> first(vertices.begin(), vertices.begin() + 3000);
+  Rank alone(problem_, grid_, 1), rank(problem_, grid_, 2);
+  for (Rank* one : {&alone, &rank}) one->learner.learn(first, kReceivedInsertion, nullptr);
+  VertexLocks other(77);
+  for (VertexId v = 0; v < rank.mesh().vertex_bound(); ++v) other.try_lock(rank.mesh().vertex(v));
+  const std::uint64_t before = rank.learner.num_put_off();
+  std::vector<CellId> made;
+  for (Rank* one : {&alone, &rank})
+    one->learner.learn(changes_of(vertices), kReceivedInsertion, one == &rank ? &made : nullptr);
+  other.unlock_all();
+  EXPECT_GT(rank.learner.num_put_off(), before + 500);
+  EXPECT_EQ(cells_by_points(rank.mesh()), cells_by_points(alone.mesh()));
+  expect_lists_new_cells(rank.mesh(), {vertices.begin() + 3000, vertices.end()}, std::move(made));
 }
 
 TEST_F(Learners, LogWhatTheyLearnInAnOrderThatCanBeRepeated) {
@@ -127,6 +160,8 @@ TEST_F(Learners, PassAFaultOfAThreadOn) {
     std::vector<LearntVertex> changes = drawn_vertices(3000, 4);
     changes[1234].kind = VertexKind::kUnused;  // no such vertex
     EXPECT_THROW(rank.learner.learn(changes, kReceivedInsertion, nullptr), InternalError);
+    EXPECT_TRUE(is_valid(rank.mesh()));
+    for (VertexId v = 0; v < rank.mesh().vertex_bound(); ++v) EXPECT_EQ(rank.mesh().vertex(v).lock, 0u);
   }
 }
 

@@ -121,7 +121,7 @@ std::vector<LoggedCase> logged_cases() {
   cases.push_back({"pdr", three_labels(), 1, 3, 2, Space::kRas, 0, true, Algorithm::kPdr});
   cases.push_back(
       {"stopped_in_leaves", ball(24, 9), 1.2, 3, 4, Space::kRas, 12000, true, Algorithm::kPdrPodm});
-  cases.push_back({"stopped_at_the_seeds", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000});
+  cases.push_back({"stopped_early", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000});
   cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
   return cases;
 }

@@ -167,7 +167,7 @@ TEST(RoundsByLeaves, RefineMostInLeavesOfOneOctree) {
 
 TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
   const Case of{"", ball(24, 9), 1.2, 0, 3};
-  for (const std::uint64_t most_cells : {1000u, 4000u}) {  // with the seeds, and in the first round
+  for (const std::uint64_t most_cells : {1000u, 4000u}) {  // of coarser seeds, and in the first round
     Ranks ranks(of, 1, {.max_elements = most_cells});
     std::uint64_t insertions = 0;
     for (int rank = 0; rank < 3; ++rank) {

@@ -27,8 +27,8 @@ inline constexpr std::uint32_t kMovedVertex = 0;
 
 /// Kinds of entries that are not operations. They log what a rank learns from other ranks between its own
 /// operations. kReceivedInsertion plus a VertexKind: a vertex exists. kReceivedRemoval: the removed vertex is
-/// gone. kSeed plus a VertexKind: a vertex exists in the first step. Each rank makes the seeds around its
-/// part of space by itself.
+/// gone. kSeed plus a VertexKind, in the first step: a vertex that the rank computed by itself; other ranks
+/// may have logged the same one.
 inline constexpr std::uint32_t kReceivedInsertion = 1u << 8, kReceivedRemoval = 1u << 9, kSeed = 1u << 10;
 
 /// The high bits of a sequence number are the step, from 0. A run on one machine has only step 0.
@@ -44,7 +44,7 @@ struct LoggedOperation {
   std::array<double, 3> point{};  ///< mm, working frame
   std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are reused
   std::uint32_t worker = 0;
-  std::uint32_t kind = 0;  ///< a VertexKind, or kMovedVertex
+  std::uint32_t kind = 0;  ///< a VertexKind, or one of the kinds above
   std::uint32_t num_removed = 0;
 };
 static_assert(sizeof(LoggedOperation) == 48);
