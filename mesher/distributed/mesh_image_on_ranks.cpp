@@ -1,5 +1,7 @@
 #include "distributed/mesh_image_on_ranks.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <concepts>
@@ -41,13 +43,21 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual time");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
-  refuse(options.sizes.image || !options.sizes.near.empty(), "a local size");
   for_each_option(options, [](const Declaration& of, const auto& value) {
     refuse(of.not_on_ranks && !is_default(of.name, value), spelled(of));
   });
 }
 
 namespace {
+
+std::string hash_of(const SizeImage* image) {
+  if (image == nullptr) return "none";
+  Sha256 hash;
+  hash.update(std::span<const int>(image->size));
+  hash.update(std::span<const double>(image->voxel_to_ras));
+  hash.update(std::span<const float>(image->radius_mm));
+  return "SHA-256 " + hash.hexadecimal();
+}
 
 std::string hash_of(const LabelImage& image) {
   Sha256 hash;
@@ -67,9 +77,17 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
   const SizeOptions& sizes = options.sizes;
   std::string radii;
   for (const auto& [value, radius_mm] : sizes.radius_of_mm) radii += fmt::format("{}={} ", value, radius_mm);
+  std::string near;
+  for (const InterfaceSize& of : sizes.near)
+    near += fmt::format("{},{}={}:{} ", fmt::join(of.labels[0], "+"), fmt::join(of.labels[1], "+"),
+                        of.radius_mm, of.width_mm);
   return {{"radius", fmt::format("{} mm", sizes.radius_mm)},
           {"radii of labels", radii},
           {"delta", fmt::format("{} mm", sizes.delta_mm)},
+          {"size image", hash_of(sizes.image.get())},
+          {"sizes near interfaces", near},
+          {"growth of sizes", fmt::format("{}", sizes.grade)},
+          {"smoothing", fmt::format("{} mm", options.smoothing_mm)},
           {"space", to_string(options.space)},
           {"algorithm", to_string(options.algorithm)},
           {"leaf size", fmt::format("{} mm", options.leaves.size_mm)},
@@ -100,7 +118,7 @@ class RunOnRank {
   MeshingOnRanks operator()() {
     MeshingOnRanks result;
     MeshingReport own;
-    phases_.transform(own, [&] { return isosurface(); });
+    phases_.transform(own, [&](auto weights) { return isosurface(std::move(weights)); });
     spending_.end("transform");
     refine(own);
     phases_.report_refinement(refined_->refinement, own);
@@ -124,8 +142,10 @@ class RunOnRank {
   }
 
  private:
-  std::shared_ptr<const Isosurface> isosurface() {
-    const auto make = [&] { return std::make_shared<const Isosurface>(image_, phases_.loop_threads()); };
+  std::shared_ptr<const Isosurface> isosurface(std::shared_ptr<const VoxelWeights> weights) {
+    const auto make = [&] {
+      return std::make_shared<const Isosurface>(image_, phases_.loop_threads(), std::move(weights));
+    };
     return isosurface_ != nullptr ? isosurface_->get(make, ranks_) : make();
   }
 

@@ -66,15 +66,16 @@ void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cel
 }
 
 void PhasesOfRun::transform(MeshingReport& report) {
-  const auto weights = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
-  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_, weights); });
+  transform(report, [&](std::shared_ptr<const VoxelWeights> weights) {
+    return std::make_shared<const Isosurface>(image_, loop_threads_, std::move(weights));
+  });
 }
 
-void PhasesOfRun::transform(MeshingReport& report,
-                            const std::function<std::shared_ptr<const Isosurface>()>& make) {
+void PhasesOfRun::transform(MeshingReport& report, const MakeIsosurface& make) {
+  auto weights = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
   announce("transform", 0, 0);
   const double start_s = seconds_();
-  isosurface_ = make();
+  isosurface_ = make(std::move(weights));
   object_ = foreground_bounds(image_, loop_threads_);
   asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
   expected_ = estimate(image_, options_, asked_grid_.get());

@@ -26,8 +26,11 @@ class PhasesOfRun {
   PhasesOfRun(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
               std::stop_token stop, double share_of_cells = 1, Seconds seconds = seconds_on_the_wall);
 
-  /// The first phase, which all other phases need. `make` returns the isosurface of the image.
-  void transform(MeshingReport& report, const std::function<std::shared_ptr<const Isosurface>()>& make);
+  /// The first phase, which all other phases need. make() returns the isosurface of the image whose voxels
+  /// have these weights; null: all weights are 1.
+  using MakeIsosurface =
+      std::function<std::shared_ptr<const Isosurface>(std::shared_ptr<const VoxelWeights>)>;
+  void transform(MeshingReport& report, const MakeIsosurface& make);
   void transform(MeshingReport& report);
   const Isosurface& isosurface() const { return *isosurface_; }
   const TeamOfRun& team() const { return team_; }

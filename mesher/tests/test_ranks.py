@@ -146,6 +146,20 @@ class Meshes(OnRanks):
         self.assert_exit(self.mesh(2, "--radius", 4, "--verify"), 0)
         self.assertEqual(set(self.last_record()["verdicts"].values()), {"pass"})
 
+    def test_smooth_interfaces_and_sizes_by_place(self):
+        for options in (["--smooth", 1.5], ["--size-near", "1,0=2:3", "--grade", 0.3]):
+            with self.subTest(options=options):
+                log = self.folder / "run.log"
+                process = self.mesh_in_process(3, "--radius", 5, *options, "--verify", "--log", log)
+                self.assert_exit(process, 0)
+                record = self.last_record()
+                self.assertEqual(set(record["verdicts"].values()), {"pass"})
+                self.assertLessEqual({"size", "surface_vertices"}, set(record["verdicts"]))
+                self.assert_exit(run_podm("replay", IMAGE, *(self.folder / f"run.log.{i}" for i in range(3))), 0)
+                self.assert_exit(run_podm("mesh", IMAGE, "--radius", 5, *options, "-o", self.folder / "alone.vtu",
+                                          "--record", self.runs), 0)
+                self.assertLess(abs(record["cells"] / self.last_record()["cells"] - 1), 0.03)
+
     def test_more_ranks_than_there_is_to_do(self):
         image = write_nifti(self.folder / "ball.nii", ball_voxels(12))
         self.assert_exit(self.mesh(6, "--radius", 6, "--delta", 3, image=image), 0)
@@ -162,6 +176,11 @@ class Meshes(OnRanks):
         self.assert_exit(process, 0)
         self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks request {processors + 1} threads")
 
+    def test_more_than_one_rank_per_machine_is_warned_of_once(self):
+        for number in 1, 2:
+            process = self.mesh(number, "--radius", 6, "--threads", 1)
+            self.assert_exit(process, 0)
+            self.assertEqual(process.stderr.count("one rank per machine"), number - 1)
 
     def test_help_fits_a_terminal_and_names_what_is_refused(self):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
@@ -287,7 +306,7 @@ class Logs(OnRanks):
                     log.unlink()
 
     def test_a_run_that_is_stopped_equals_its_replay(self):
-        for most in 6000, 60000:  # with the seeds, and after them
+        for most in 6000, 60000:  # with coarser seeds, and without
             self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
             self.assert_replays(self.logs(3))
 

@@ -47,8 +47,11 @@ class Run {
     if (log_) write_log(run, result.mesh_hash);
     run.write_s = ranks_.seconds() - start_s;
     auto& warnings = run.report.warnings;
-    if (!is_in_process()) warnings = machines_.warnings(command_.meshing.team.threads);
-    warnings.insert(warnings.end(), run.image.warnings.begin(), run.image.warnings.end());
+    const auto add = [&](const std::vector<std::string>& more) {
+      warnings.insert(warnings.end(), more.begin(), more.end());
+    };
+    if (!is_in_process()) add(machines_.warnings(command_.meshing.team.threads));
+    add(run.image.warnings);
     gather_from_ranks(result, command_.meshing.team.threads, machines_, ranks_, run);
     std::array<std::uint64_t, 1> code{0};
     if (ranks_.rank() == 0) {
@@ -123,7 +126,8 @@ class Run {
                                 .mesh_sha256 = {},
                                 .mesh_hash = mesh_hash_text(mesh_hash),
                                 .rank = ranks_.rank(),
-                                .num_ranks = ranks_.size()};
+                                .num_ranks = ranks_.size(),
+                                .smoothing_mm = run.options.smoothing_mm};
     do_collectively([&] { log_->finish(head); }, ranks_);
     do_collectively([&] { log_->publish(); }, ranks_);
     if (ranks_.rank() == 0) remove_logs_of_more_ranks();

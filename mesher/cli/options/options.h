@@ -64,7 +64,6 @@ struct MeshCommand {
     using M = MeshCommand;
     using enum OptionGroup;
     constexpr unsigned kOfPlaces = kInAll | kInPlan;
-    constexpr const char* kNoSizesByPlace = "the grid of sizes covers the whole image";
     return std::tuple{
         nested(&M::image),
         nested(&M::meshing),
@@ -76,11 +75,11 @@ struct MeshCommand {
         option(&M::size_image_path, "size-image", "FILE", kSize,
                "local bounds on circumradii: a volume of mm on its own grid; values of 0 or less\n"
                "set no bound",
-               {.unset = "none", .uses = kOfPlaces, .not_on_ranks = kNoSizesByPlace}),
+               {.unset = "none", .uses = kOfPlaces}),
         option(&M::size_near, "size-near", "A,B=MM[:WIDTH]", kSize,
                "bound within WIDTH mm of the interface of two labels, by name or value (the\n"
                "background by its value), e.g. liver,0=1:3; repeatable",
-               {.unset = "none; WIDTH: MM", .uses = kOfPlaces, .not_on_ranks = kNoSizesByPlace}),
+               {.unset = "none; WIDTH: MM", .uses = kOfPlaces}),
         option(
             &M::max_memory, "max-memory-gib", "GIB", kLimits, "memory of the process, GiB",
             {.unset = kDefaultMemory,

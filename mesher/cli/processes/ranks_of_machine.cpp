@@ -70,14 +70,24 @@ std::vector<std::string> RanksOfMachine::warnings(int threads) const {
   for (std::size_t i = 0; i < machines_.size(); ++i) {
     const Machine& machine = machines_[i];
     if (threads_of_machine[i] <= machine.processors.size()) continue;
-    const auto host =
-        std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.machine == i; });
     lines.push_back(fmt::format(
         "{}: {} ranks request {} threads but may use {} processors; use fewer threads, or unbind the ranks "
         "(mpirun --bind-to none)",
-        host->host, machine.num_ranks, threads_of_machine[i], machine.processors.size()));
+        host_of_machine(i), machine.num_ranks, threads_of_machine[i], machine.processors.size()));
   }
+  const auto shared = std::find_if(machines_.begin(), machines_.end(),
+                                   [](const Machine& machine) { return machine.num_ranks > 1; });
+  if (shared != machines_.end())
+    lines.push_back(fmt::format(
+        "{}: {} ranks; one rank per machine with a thread per core learns fewer vertices and holds the image "
+        "once (Open MPI: mpirun --map-by ppr:1:node --bind-to none)",
+        host_of_machine(static_cast<std::size_t>(shared - machines_.begin())), shared->num_ranks));
   return lines;
+}
+
+const std::string& RanksOfMachine::host_of_machine(std::size_t machine) const {
+  return std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.machine == machine; })
+      ->host;
 }
 
 }  // namespace podm::cli

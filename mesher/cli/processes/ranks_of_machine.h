@@ -21,7 +21,8 @@ class RanksOfMachine {
   /// Returns an even share of the processors that the machine's ranks may use, and at most the number that
   /// this rank may use.
   int share_of_processors() const;
-  /// Returns one line per machine that has fewer processors than its ranks have threads. Collective.
+  /// Returns one line per machine that has fewer processors than its ranks have threads, and one line if a
+  /// machine has several ranks. Collective.
   std::vector<std::string> warnings(int threads) const;
 
  private:
@@ -34,6 +35,7 @@ class RanksOfMachine {
     int num_ranks = 0;
     std::vector<int> processors;  // those of all its ranks, each once
   };
+  const std::string& host_of_machine(std::size_t machine) const;
   const Machine& here() const { return machines_[places_[own_].machine]; }
 
   Communication& ranks_;

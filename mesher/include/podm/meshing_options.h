@@ -92,9 +92,7 @@ struct SizeOptions {
                 .needs = "target-elements"}),
         option(&S::grade, "grade", "G", kSize,
                "limit the growth of all bounds on sizes, of labels too, to G mm per mm",
-               {.unset = "no limit",
-                .uses = kInAll | kInPlan,
-                .not_on_ranks = "the graded grid covers the whole image"})};
+               {.unset = "no limit", .uses = kInAll | kInPlan})};
   }
 };
 
@@ -181,8 +179,8 @@ struct LeafOptions {
     using L = LeafOptions;
     using enum OptionGroup;
     return std::tuple{option(&L::initial_ratio, "initial-ratio", "X", kAlgorithm,
-                             "bounds of the initial mesh of pdr, pdr-podm and\n"
-                             "podm-mpi over the final ones",
+                             "bounds of the initial mesh of pdr and pdr-podm over\n"
+                             "the final ones",
                              {.least = 1}),
                       option(&L::size_mm, "leaf-size", "MM", kAlgorithm, "side of the octree's leaves, mm",
                              {.unset = "from the bounds of the initial mesh", .quantity = "length in mm"})};
@@ -263,7 +261,6 @@ struct MeshingOptions {
                {.unset = "interfaces follow the voxels",
                 .record = "smoothing_mm",
                 .uses = kInAll | kInPlan,
-                .not_on_ranks = "the weights of all voxels would be on every rank",
                 .quantity = "length in mm"}),
         option(&M::min_dihedral_deg, "min-dihedral", "DEG", kDihedral,
                "at the end move vertices until almost no cell with an interior vertex has a\n"
