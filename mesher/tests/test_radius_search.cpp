@@ -57,7 +57,8 @@ TEST(RadiusSearch, RefusesATargetBelowWhatFixedSizesAskFor) {
 
 // A mesh that nearly missed the object gives no information on the next mesh.
 TEST(RadiusSearch, BelievesNoMeshThatIsFarOff) {
-  RadiusSearch search(ball(40, 15), kAsked, 1);
+  const LabelImage image = ball(40, 15);  // outlives the search
+  RadiusSearch search(image, kAsked, 1);
   const double first = search.radius_mm();
   search.learn(3);
   EXPECT_GT(search.radius_mm(), first / 3);
