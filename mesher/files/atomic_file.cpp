@@ -8,6 +8,7 @@ namespace podm {
 AtomicFile::AtomicFile(const std::string& path) : file_(path), buffer_(new char[kBufferBytes]) {}
 
 void AtomicFile::write(const void* bytes, std::size_t size) {
+  if (size == 0) return;  // `bytes` may then be null, which memcpy does not allow
   const char* from = static_cast<const char*>(bytes);
   if (buffered_ + size > kBufferBytes) flush();
   if (size > kBufferBytes) return file_.write(from, size);

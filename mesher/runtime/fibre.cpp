@@ -19,6 +19,7 @@
 #endif
 
 #ifdef PODM_TELLS_ADDRESS_SANITIZER
+#include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
 #ifdef PODM_TELLS_THREAD_SANITIZER
@@ -33,6 +34,22 @@ namespace {
 constexpr std::size_t kStackBytes = 256 << 10;
 
 thread_local Fibre* running = nullptr;
+
+// The last frames of a stack never return. The address sanitizer would take their marks for those of whatever
+// is mapped at these addresses later.
+class StackAllocator {
+ public:
+  boost::context::stack_context allocate() { return stacks_.allocate(); }
+  void deallocate(boost::context::stack_context& stack) noexcept {
+#ifdef PODM_TELLS_ADDRESS_SANITIZER
+    __asan_unpoison_memory_region(static_cast<const std::byte*>(stack.sp) - kStackBytes, kStackBytes);
+#endif
+    stacks_.deallocate(stack);
+  }
+
+ private:
+  boost::context::protected_fixedsize_stack stacks_{kStackBytes};
+};
 
 }  // namespace
 
@@ -71,7 +88,7 @@ struct Fibre::Stacks {
 Fibre* Fibre::current() { return running; }
 
 Fibre::Fibre(std::function<void()> call) : call_(std::move(call)), stacks_(std::make_unique<Stacks>()) {
-  boost::context::protected_fixedsize_stack allocator(kStackBytes);
+  StackAllocator allocator;
   const boost::context::stack_context stack = allocator.allocate();
   bottom_ = static_cast<const std::byte*>(stack.sp) - kStackBytes;
   own_ = boost::context::fiber(std::allocator_arg, boost::context::preallocated(stack.sp, stack.size, stack),
