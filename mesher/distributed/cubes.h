@@ -110,6 +110,7 @@ class CubeSet {
   bool has(CubeId cube) const { return has_[cube] != 0; }
   bool has(const Point& p) const { return has(grid_->cube_at(p)); }
   void insert(CubeId cube) { has_[cube] = 1; }
+  void erase(CubeId cube) { has_[cube] = 0; }
   void insert_all() { has_.assign(has_.size(), 1); }
   bool is_full() const;
   std::vector<CubeId> cubes() const;

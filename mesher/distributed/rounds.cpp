@@ -364,8 +364,10 @@ class Rounds {
     is_over_ = is_over_anywhere();
     if (report.deferred == 0 || is_over_) return {};
     const CubeSet waiting = share_waiting(left);
-    if (!has_cuts(round + 1, report.deferred)) reach_over_radius_ *= 2;
-    zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, load_);
+    Zones zones =
+        zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, exchange_.writers(), load_);
+    if (zones.are_connected) reach_over_radius_ *= 2;
+    zone_of_ = std::move(zones.rank_of_cube);
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
     for (const CellName& name : left) {
       const int rank = zone_of_[grid_.cube_at(ball_of(name).center)];

@@ -15,19 +15,13 @@ bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != 
 }  // namespace
 
 void VertexExchange::begin(const std::vector<int>& writer_of_cube, const CubeSet& known) {
-  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-    cubes_[cube] = {.writer = writer_of_cube[cube], .is_up_to_date = known.has(cube)};
+  writer_of_ = writer_of_cube;
+  known_ = known;
 }
 
 void VertexExchange::note_writer(CubeId cube, int rank) {
-  cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
-}
-
-CubeSet VertexExchange::known() const {
-  CubeSet known(grid_);
-  for (CubeId cube = 0; cube < cubes_.size(); ++cube)
-    if (cubes_[cube].is_up_to_date) known.insert(cube);
-  return known;
+  writer_of_[cube] = rank;
+  rank == ranks_.rank() ? known_.insert(cube) : known_.erase(cube);
 }
 
 Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) {
@@ -35,10 +29,9 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
   Update update;
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
   for (const CubeId cube : wanted.cubes()) {
-    State& state = cubes_[cube];
-    if (state.is_up_to_date) continue;
-    asked[static_cast<std::size_t>(state.writer)].push_back(cube);
-    state.is_up_to_date = true;
+    if (known_.has(cube)) continue;
+    asked[static_cast<std::size_t>(writer_of_[cube])].push_back(cube);
+    known_.insert(cube);
     ++update.cubes;
   }
   std::vector<Bytes> questions(asked.size());

@@ -15,14 +15,16 @@ class VertexExchange : public VertexSource {
  public:
   /// Keeps the references.
   VertexExchange(Communication& ranks, Learner& learner, const CubeGrid& grid)
-      : ranks_(ranks), learner_(learner), grid_(grid), cubes_(grid.num_cubes()) {}
+      : ranks_(ranks), learner_(learner), grid_(grid), writer_of_(grid.num_cubes()), known_(grid) {}
 
   /// Notes the first writer of every cube, and the cubes of which this rank has all vertices.
   void begin(const std::vector<int>& writer_of_cube, const CubeSet& known);
   /// Notes that from now on the given rank has the current vertices of the cube.
   void note_writer(CubeId cube, int rank);
 
-  CubeSet known() const override;
+  /// Returns the rank that wrote each cube last.
+  const std::vector<int>& writers() const { return writer_of_; }
+  CubeSet known() const override { return known_; }
   /// Collective.
   Update update(const CubeSet& wanted, std::vector<CellId>* made = nullptr) override;
 
@@ -38,11 +40,8 @@ class VertexExchange : public VertexSource {
   Communication& ranks_;
   Learner& learner_;
   const CubeGrid& grid_;
-  struct State {
-    int writer = 0;
-    bool is_up_to_date = false;  // true if this rank's copy is current
-  };
-  std::vector<State> cubes_;
+  std::vector<int> writer_of_;  // by cube
+  CubeSet known_;               // cubes of which this rank's copy is current
 };
 
 }  // namespace podm

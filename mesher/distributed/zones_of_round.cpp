@@ -10,8 +10,9 @@ namespace podm {
 
 namespace {
 
-// After this round, cells that still wait need more room than cuts leave.
-constexpr int kLastWithCuts = 8;
+// The shift of blocks from round to round, in cubes. A larger shift requires more vertices of other ranks,
+// and thin blocks come to lie over each other. With a smaller one the deferred cells of a face lack room.
+constexpr int kCubesPerShift = 2;
 // With fewer deferred cells a cut is not worth the round that it may cost.
 constexpr std::uint64_t kCellsPerZone = 5000;
 // More than one zone per rank, so that the load can be balanced.
@@ -106,6 +107,27 @@ std::vector<std::size_t> connected_zones(const CubeSet& waiting) {
   return zone_of;
 }
 
+// Cuts zones with many deferred cells. Returns false if there is none.
+bool cut_large(std::vector<std::size_t>& zone_of, const CubeSet& waiting,
+               const std::vector<std::uint32_t>& num_cells, std::size_t num_ranks) {
+  const std::vector<CubeId> cubes = waiting.cubes();
+  std::vector<std::uint64_t> cells_of(cubes.size());  // by zone
+  for (const CubeId cube : cubes) cells_of[zone_of[cube]] += num_cells[cube];
+  CubeSet large(waiting.grid());
+  std::vector<std::uint32_t> cells_in_large(num_cells.size());
+  std::uint64_t cells = 0;
+  for (const CubeId cube : cubes) {
+    if (cells_of[zone_of[cube]] < 2 * kCellsPerZone) continue;
+    large.insert(cube);
+    cells += cells_in_large[cube] = num_cells[cube];
+  }
+  if (cells == 0) return false;
+  const std::size_t num_zones = std::min<std::uint64_t>(kZonesPerRank * num_ranks, cells / kCellsPerZone);
+  const std::vector<std::size_t> parts = CutZones(large, cells_in_large, num_zones)();
+  for (const CubeId cube : large.cubes()) zone_of[cube] = cubes.size() + parts[cube];
+  return true;
+}
+
 struct ZoneSize {
   std::map<int, std::size_t> cubes_of_block;
   std::size_t cubes = 0, cells = 0;
@@ -122,24 +144,22 @@ std::vector<int> candidates(const ZoneSize& zone) {
   return blocks;
 }
 
-// Assigns zones to ranks. A zone moves to another rank as long as that rank then has less than the zone's
-// rank has now. Each move reduces the sum of squares of the loads. `load` holds the loads before, in cells,
-// and receives the new loads.
-std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::uint64_t>& load) {
+// Assigns zones to ranks, both by number of zone. A zone moves to another rank as long as that rank then has
+// less than the zone's rank has now. Each move reduces the sum of squares of the loads. `load` holds the
+// loads before, in cells, and receives the new loads.
+std::map<std::size_t, int> ranks_of(const std::map<std::size_t, ZoneSize>& zones,
+                                    std::vector<std::uint64_t>& load) {
   const auto of = [&](int rank) -> std::uint64_t& { return load[static_cast<std::size_t>(rank)]; };
-  std::vector<int> rank_of;
-  for (const ZoneSize& zone : zones) {
-    rank_of.push_back(candidates(zone).front());
-    of(rank_of.back()) += zone.cells;
-  }
+  std::map<std::size_t, int> rank_of;
+  for (const auto& [number, zone] : zones) of(rank_of[number] = candidates(zone).front()) += zone.cells;
   for (bool has_moved = true; has_moved;) {
     has_moved = false;
-    for (std::size_t i = 0; i < zones.size(); ++i) {
-      for (const int rank : candidates(zones[i])) {
-        if (of(rank) + zones[i].cells >= of(rank_of[i])) continue;
-        of(rank_of[i]) -= zones[i].cells;
-        of(rank) += zones[i].cells;
-        rank_of[i] = rank;
+    for (const auto& [number, zone] : zones) {
+      for (const int rank : candidates(zone)) {
+        if (of(rank) + zone.cells >= of(rank_of[number])) continue;
+        of(rank_of[number]) -= zone.cells;
+        of(rank) += zone.cells;
+        rank_of[number] = rank;
         has_moved = true;
       }
     }
@@ -147,32 +167,41 @@ std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::u
   return rank_of;
 }
 
-}  // namespace
-
-bool has_cuts(int round, std::uint64_t num_waiting) {
-  return round <= kLastWithCuts && num_waiting >= 2 * kCellsPerZone;
+std::vector<int> shifted_blocks(int round, const Blocks& blocks, const CubeSet& waiting,
+                                const std::vector<std::uint32_t>& num_cells,
+                                const std::vector<int>& writer_of_cube, std::vector<std::uint64_t>& load) {
+  const CubeGrid& grid = waiting.grid();
+  std::vector<int> rank_of_cube(grid.num_cubes(), kNoRank);
+  grid.for_each(grid.all(), [&](CubeId cube, CubePlace at) {
+    for (int& place : at) place = std::max(0, place - kCubesPerShift * round);
+    const int rank = blocks.of(grid.id(at));
+    if (!waiting.has(cube) && writer_of_cube[cube] != rank) return;
+    rank_of_cube[cube] = rank;
+    load[static_cast<std::size_t>(rank)] += num_cells[cube];
+  });
+  return rank_of_cube;
 }
 
-std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
-                                const std::vector<std::uint32_t>& num_cells,
-                                std::vector<std::uint64_t>& load) {
-  const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
-  const std::size_t num_zones =
-      std::min<std::uint64_t>(kZonesPerRank * load.size(), all_cells / kCellsPerZone);
-  const std::vector<std::size_t> zone_of =
-      has_cuts(round, all_cells) ? CutZones(waiting, num_cells, num_zones)() : connected_zones(waiting);
-  std::vector<ZoneSize> zones;
-  for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
-    if (zone_of[cube] == kNoZone) continue;
-    zones.resize(std::max(zones.size(), zone_of[cube] + 1));
-    ++zones[zone_of[cube]].cubes_of_block[blocks.of(cube)];
-    ++zones[zone_of[cube]].cubes;
-    zones[zone_of[cube]].cells += num_cells[cube];
+}  // namespace
+
+Zones zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
+                     const std::vector<std::uint32_t>& num_cells, const std::vector<int>& writer_of_cube,
+                     std::vector<std::uint64_t>& load) {
+  if (round <= kShiftedRounds)
+    return {shifted_blocks(round, blocks, waiting, num_cells, writer_of_cube, load)};
+  std::vector<std::size_t> zone_of = connected_zones(waiting);
+  const bool has_cuts = round <= kLastRoundWithCuts && cut_large(zone_of, waiting, num_cells, load.size());
+  std::map<std::size_t, ZoneSize> zones;
+  for (const CubeId cube : waiting.cubes()) {
+    ZoneSize& zone = zones[zone_of[cube]];
+    ++zone.cubes_of_block[blocks.of(cube)];
+    ++zone.cubes;
+    zone.cells += num_cells[cube];
   }
-  const std::vector<int> rank_of = ranks_of(zones, load);
-  std::vector<int> rank_of_cube;
-  for (const std::size_t zone : zone_of) rank_of_cube.push_back(zone == kNoZone ? kNoRank : rank_of[zone]);
-  return rank_of_cube;
+  const std::map<std::size_t, int> rank_of = ranks_of(zones, load);
+  std::vector<int> rank_of_cube(zone_of.size(), kNoRank);
+  for (const CubeId cube : waiting.cubes()) rank_of_cube[cube] = rank_of.at(zone_of[cube]);
+  return {std::move(rank_of_cube), !has_cuts};
 }
 
 }  // namespace podm

@@ -12,7 +12,8 @@
 namespace podm::test {
 namespace {
 
-constexpr int kRoundOfConnected = 9;  // the first round without cuts
+constexpr int kRoundOfCuts = kShiftedRounds + 1;
+constexpr int kRoundOfConnected = kLastRoundWithCuts + 1;
 
 CubeGrid cubes_of_1_mm(double x, double y, double z) { return CubeGrid({{0, 0, 0}, {x, y, z}}, 1); }
 
@@ -74,8 +75,11 @@ class ZonesOfRound : public testing::TestWithParam<int> {
     return num_cells;
   }
   std::vector<int> zones(const CubeSet& waiting, std::uint32_t cells) {
-    return zones_of_round(GetParam(), blocks_, waiting, cells_in(waiting, cells), load_);
+    return zones_of_round(GetParam(), blocks_, waiting, cells_in(waiting, cells), blocks_.ranks(), load_)
+        .rank_of_cube;
   }
+  bool is_shifted() const { return GetParam() <= kShiftedRounds; }
+  bool is_cut() const { return !is_shifted() && GetParam() <= kLastRoundWithCuts; }
 
   static constexpr int kRanks = 8;
   static constexpr std::uint32_t kMany = 100;  // cells per cube, enough for several ranks to get zones
@@ -84,14 +88,19 @@ class ZonesOfRound : public testing::TestWithParam<int> {
   std::vector<std::uint64_t> load_ = std::vector<std::uint64_t>(kRanks);
 };
 
-TEST_P(ZonesOfRound, AreOfAllThatWaitsAndNothingElse) {
+TEST_P(ZonesOfRound, AreOfAllThatWaitsAndOtherwiseOfTheWriterAtMost) {
   for (const std::uint32_t cells : {0u, 1u, kMany}) {
     const CubeSet waiting = along_faces();
     const std::vector<int> rank_of = zones(waiting, cells);
     ASSERT_EQ(rank_of.size(), grid_.num_cubes());
     for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
-      ASSERT_EQ(rank_of[cube] == kNoRank, !waiting.has(cube));
       ASSERT_LT(rank_of[cube], kRanks);
+      if (waiting.has(cube)) {
+        ASSERT_NE(rank_of[cube], kNoRank);
+      } else if (rank_of[cube] != kNoRank) {
+        ASSERT_TRUE(is_shifted());
+        ASSERT_EQ(rank_of[cube], blocks_.of(cube));
+      }
     }
   }
 }
@@ -102,14 +111,13 @@ TEST_P(ZonesOfRound, AddTheirCellsToTheLoadOfTheirRanks) {
   const CubeSet waiting = along_faces();
   const std::vector<int> rank_of = zones(waiting, kMany);
   std::vector<std::uint64_t> expected = before;
-  for (const int rank : rank_of)
-    if (rank != kNoRank) expected[static_cast<std::size_t>(rank)] += kMany;
+  for (const CubeId cube : waiting.cubes()) expected.at(static_cast<std::size_t>(rank_of[cube])) += kMany;
   EXPECT_EQ(load_, expected);
 }
 
 // Ranks take only zones that overlap their blocks, so the load is uneven.
 TEST_P(ZonesOfRound, AreForMostRanksWhereMuchWaits) {
-  if (GetParam() >= kRoundOfConnected) return;
+  if (!is_cut()) return;
   const CubeSet waiting = along_faces();
   zones(waiting, kMany);
   EXPECT_LE(std::count(load_.begin(), load_.end(), 0u), kRanks / 4);
@@ -120,10 +128,30 @@ TEST_P(ZonesOfRound, AreForMostRanksWhereMuchWaits) {
 // The number of waiting cells where zones meet decreases much in each round; otherwise there would be many
 // rounds.
 TEST_P(ZonesOfRound, MeetWhereLittleWaits) {
+  const CubeSet waiting = along_faces();
+  const CubeSet meeting = along_faces_of(zones(waiting, kMany));
+  const std::vector<CubeId> cubes = waiting.cubes();
+  EXPECT_LT(6 * std::count_if(cubes.begin(), cubes.end(), [&](CubeId cube) { return meeting.has(cube); }),
+            std::ssize(cubes));
+}
+
+// The faces of blocks and of blocks shifted one to three times have a common place nearly nowhere, because a
+// place is on few faces at once.
+TEST_F(ZonesOfRound, NearlyAllCellsAreRefinedByTheLastShiftedRound) {
   CubeSet waiting = along_faces();
   const std::size_t before = waiting.cubes().size();
-  const std::vector<int> rank_of = zones(waiting, kMany);
-  EXPECT_LT(6 * along_faces_of(rank_of).cubes().size(), before);
+  std::vector<int> writer_of = blocks_.ranks();
+  for (int round = 1; round <= kShiftedRounds; ++round) {
+    const Zones zones =
+        zones_of_round(round, blocks_, waiting.grown(1), cells_in(waiting, 1), writer_of, load_);
+    EXPECT_FALSE(zones.are_connected);
+    const CubeSet meeting = along_faces_of(zones.rank_of_cube);
+    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
+      if (!meeting.has(cube)) waiting.erase(cube);
+      if (zones.rank_of_cube[cube] != kNoRank) writer_of[cube] = zones.rank_of_cube[cube];
+    }
+  }
+  EXPECT_LT(1000 * waiting.cubes().size(), before);
 }
 
 TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEndOrWhereLittleWaits) {
@@ -133,7 +161,8 @@ TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEndOrWhereLittleWaits) {
     const auto drawn = [&] { return 20 + static_cast<int>(random() % 20); };
     waiting.insert(grid_.id({drawn(), drawn(), drawn()}));
   }
-  const std::vector<int> rank_of = zones(waiting, GetParam() < kRoundOfConnected ? 1 : kMany);
+  if (is_shifted()) return;
+  const std::vector<int> rank_of = zones(waiting, is_cut() ? 1 : kMany);
   const std::vector<CubeId> cubes = waiting.cubes();
   std::set<int> ranks(rank_of.begin(), rank_of.end());
   ranks.erase(kNoRank);
@@ -146,6 +175,7 @@ TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEndOrWhereLittleWaits) {
 }
 
 TEST_P(ZonesOfRound, AreNoneWhereNothingWaits) {
+  if (is_shifted()) return;
   const std::vector<int> rank_of = zones(CubeSet(grid_), kMany);
   EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNoRank; }));
 }
@@ -162,29 +192,55 @@ TEST_P(ZonesOfRound, AreThereWhereAllWaitInFewCubes) {
 }
 
 TEST_P(ZonesOfRound, AreCutInTheMiddleOfWhatIsEmpty) {
-  if (GetParam() >= kRoundOfConnected) return;
+  if (!is_cut()) return;
   const CubeGrid row = cubes_of_1_mm(40, 1, 1);
   const Blocks halves(row, std::vector<std::uint64_t>(row.num_cubes(), 1), 2);
   CubeSet waiting(row);
   std::vector<std::uint32_t> num_cells(row.num_cubes());
-  for (const CubeId cube : {0u, 10u, 11u, 28u, 29u, 39u}) {
+  for (CubeId cube = 0; cube < row.num_cubes(); ++cube) {
     waiting.insert(cube);
-    num_cells[cube] = 2000;  // 12000 in all: two zones
+    if (cube < 12 || cube > 27) num_cells[cube] = 500;  // 12000 in all: two zones
   }
   std::vector<std::uint64_t> load(2);
-  const std::vector<int> rank_of = zones_of_round(GetParam(), halves, waiting, num_cells, load);
-  for (const CubeId cube : waiting.cubes()) EXPECT_EQ(rank_of[cube], cube < 20 ? 0 : 1);
+  const auto& [rank_of, are_connected] =
+      zones_of_round(GetParam(), halves, waiting, num_cells, halves.ranks(), load);
+  EXPECT_FALSE(are_connected);
+  for (const CubeId cube : waiting.cubes()) {
+    if (num_cells[cube] > 0) {
+      EXPECT_EQ(rank_of[cube], cube < 20 ? 0 : 1);
+    }
+  }
   EXPECT_EQ(load, (std::vector<std::uint64_t>{6000, 6000}));
 }
 
-TEST(Cuts, AreMadeWhereMuchWaitsAndEnd) {
-  EXPECT_TRUE(has_cuts(1, 100000));
-  EXPECT_FALSE(has_cuts(1, 100));
-  for (int round = kRoundOfConnected; round < 40; ++round) EXPECT_FALSE(has_cuts(round, ~std::uint64_t{0}));
+// Only large parts are cut. Parts that are not cut must grow for the rounds to end.
+TEST_P(ZonesOfRound, AreCutWhereTheyAreLargeAndTheRoundIsEarly) {
+  CubeSet waiting(grid_);
+  std::vector<std::uint32_t> num_cells(grid_.num_cubes());
+  for (int x = 0; x < 60; ++x) {
+    const CubeId small = grid_.id({x, 10, 10}), large = grid_.id({x, 40, 40});
+    waiting.insert(small);
+    waiting.insert(large);
+    num_cells[small] = 1;
+    num_cells[large] = 1000;
+  }
+  const auto& [rank_of, are_connected] =
+      zones_of_round(GetParam(), blocks_, waiting, num_cells, blocks_.ranks(), load_);
+  EXPECT_EQ(are_connected, GetParam() >= kRoundOfConnected);
+  const auto ranks_along = [&](int y, int z) {
+    std::set<int> ranks;
+    for (int x = 0; x < 60; ++x) ranks.insert(rank_of[grid_.id({x, y, z})]);
+    return ranks.size();
+  };
+  if (!is_shifted()) {
+    EXPECT_EQ(ranks_along(10, 10), 1u);
+  }
+  EXPECT_EQ(ranks_along(40, 40) > 1, GetParam() < kRoundOfConnected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rounds, ZonesOfRound,
-                         testing::Values(1, 2, kRoundOfConnected - 1, kRoundOfConnected, 20));
+                         testing::Values(1, kShiftedRounds, kRoundOfCuts, kLastRoundWithCuts,
+                                         kRoundOfConnected, 20));
 
 TEST(Components, AreTheCubesThatChainsOfNeighboursJoin) {
   const CubeGrid grid = cubes_of_1_mm(7, 6, 5);
