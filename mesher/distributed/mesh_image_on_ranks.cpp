@@ -14,6 +14,7 @@
 #include "distributed/report_of_ranks.h"
 #include "io/sha256.h"
 #include "podm/mesh_io.h"
+#include "run/calibrate.h"
 #include "run/extract_mesh.h"
 #include "run/measure_quality.h"
 #include "run/phases_of_run.h"
@@ -84,6 +85,8 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
   return {{"radius", fmt::format("{} mm", sizes.radius_mm)},
           {"radii of labels", radii},
           {"delta", fmt::format("{} mm", sizes.delta_mm)},
+          {"target number of elements", fmt::format("{} within {} %, {} meshes", sizes.target_elements,
+                                                    sizes.target_tolerance_percent, sizes.target_meshes)},
           {"size image", hash_of(sizes.image.get())},
           {"sizes near interfaces", near},
           {"growth of sizes", fmt::format("{}", sizes.grade)},
@@ -151,7 +154,39 @@ class RunOnRank {
 
   void refine(MeshingReport& own) {
     SizeOptions sizes = options_.sizes;
+    if (sizes.target_elements > 0) return refine_to_target(own);
     sizes.delta_mm = phases_.delta_mm();
+    refine_with(sizes, own);
+  }
+
+  void refine_to_target(MeshingReport& own) {
+    const auto make = [&](const SizeOptions& sizes) {
+      spending_.end("calibrate");
+      if (refined_) {
+        spending_.reassign(refined_->spent, "calibrate");
+        refined_.reset();  // frees the memory of the mesh before
+      }
+      refine_with(sizes, own);
+      return reason_on_any_rank();
+    };
+    const auto count = [&] { return num_cells(); };
+    podm::refine_to_target(image_, options_.sizes, phases_.loop_threads(),
+                           {make, count, [&] { return ranks_.seconds(); }}, own);
+  }
+
+  StopReason reason_on_any_rank() const {
+    std::array<std::uint64_t, 1> reason{static_cast<std::uint64_t>(refined_->refinement.stop_reason)};
+    ranks_.maximum(reason);
+    return static_cast<StopReason>(reason[0]);
+  }
+
+  std::uint64_t num_cells() {
+    if (ranks_.size() > 1)
+      return count_cells(*refined_, phases_.isosurface(), phases_.loop_threads(), ranks_);
+    return label_cells(*refined_->refinement.mesh, phases_.isosurface(), phases_.loop_threads());
+  }
+
+  void refine_with(const SizeOptions& sizes, MeshingReport& own) {
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       if (ranks_.size() == 1) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();
@@ -164,8 +199,8 @@ class RunOnRank {
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
       own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
-      spending_.end(refined_->spent);
     });
+    spending_.end(refined_->spent);
   }
 
   std::uint64_t hash_of_whole(const TetMesh& own) const {
@@ -177,6 +212,7 @@ class RunOnRank {
   void refine_alone(const Problem& problem, const Team& team, StopControl& stop) {
     const Vector extent = problem.object.high - problem.object.low;
     const CubeGrid grid(problem.object, std::max({extent.x, extent.y, extent.z}));
+    Spending spending(ranks_);
     refined_.emplace(DistributedRefinement{
         .refinement = refine_by(options_.algorithm, problem, team, options_.leaves, stop),
         .grid = grid,
@@ -184,7 +220,8 @@ class RunOnRank {
         .rounds = {},
         .seeds = 0,
         .last_update = {}});
-    spending_.end("refine");
+    spending.end("refine");
+    refined_->spent = spending.by_phase();
   }
 
   MeshPiece piece(Space space, std::uint64_t& facets_off_isosurface) {

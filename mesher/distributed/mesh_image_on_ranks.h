@@ -36,8 +36,8 @@ struct MeshingOnRanks {
 
 using SharedIsosurface = SharedValue<Isosurface>;
 
-/// Throws InputError on options that ranks do not support: virtual workers, target numbers of cells,
-/// kPodmHome, schedules.
+/// Throws InputError on options that ranks do not support: virtual workers, kPodmHome, schedules, dihedral
+/// bounds, optimisation.
 void check_options_on_ranks(const MeshingOptions& options);
 
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if requested. On one rank

@@ -1,6 +1,7 @@
 #include "distributed/pieces.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
@@ -32,12 +33,15 @@ class PieceOfMesh {
         threads_(num_threads(threads)),
         ranks_(ranks) {}
 
+  std::uint64_t count_cells() {
+    choose_cells();
+    std::array<std::uint64_t, 1> cells{
+        static_cast<std::uint64_t>(std::count(is_own_cell_.begin(), is_own_cell_.end(), std::uint8_t{1}))};
+    ranks_.sum(cells);
+    return cells[0];
+  }
+
   MeshPiece operator()(std::uint64_t& facets_off_isosurface) {
-    is_own_vertex_.resize(mesh_.vertex_bound());
-    in_parallel(mesh_.vertex_bound(),
-                [&](std::uint32_t v) { is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank(); });
-    agree_on_centers();
-    label_cells(mesh_, isosurface_, static_cast<int>(threads_));
     choose_cells();
     MeshPiece piece;
     piece.rank = ranks_.rank();
@@ -113,7 +117,13 @@ class PieceOfMesh {
            })] != 0;
   }
 
+  // Labels the cells, and chooses those that this rank owns.
   void choose_cells() {
+    is_own_vertex_.resize(mesh_.vertex_bound());
+    in_parallel(mesh_.vertex_bound(),
+                [&](std::uint32_t v) { is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank(); });
+    agree_on_centers();
+    label_cells(mesh_, isosurface_, static_cast<int>(threads_));
     is_own_cell_.assign(mesh_.cell_bound(), 0);
     is_used_.assign(mesh_.vertex_bound(), 0);
     in_parallel(mesh_.cell_bound(), [&](CellId c) {
@@ -231,6 +241,11 @@ class PieceOfMesh {
 MeshPiece extract_piece(DistributedRefinement& refined, const Isosurface& isosurface, Space space,
                         int threads, Communication& ranks, std::uint64_t& facets_off_isosurface) {
   return PieceOfMesh(refined, isosurface, space, threads, ranks)(facets_off_isosurface);
+}
+
+std::uint64_t count_cells(DistributedRefinement& refined, const Isosurface& isosurface, int threads,
+                          Communication& ranks) {
+  return PieceOfMesh(refined, isosurface, Space::kRas, threads, ranks).count_cells();
 }
 
 }  // namespace podm

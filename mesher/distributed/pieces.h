@@ -14,4 +14,8 @@ namespace podm {
 MeshPiece extract_piece(DistributedRefinement& refined, const Isosurface& isosurface, Space space,
                         int threads, Communication& ranks, std::uint64_t& facets_off_isosurface);
 
+/// Returns the number of cells of the whole mesh. Collective.
+std::uint64_t count_cells(DistributedRefinement& refined, const Isosurface& isosurface, int threads,
+                          Communication& ranks);
+
 }  // namespace podm

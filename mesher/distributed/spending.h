@@ -18,6 +18,9 @@ struct PhaseSeconds {
     network_s += b.network_s;
     return *this;
   }
+  PhaseSeconds& operator-=(const PhaseSeconds& b) {
+    return *this += {-b.computing_s, -b.waiting_s, -b.network_s};
+  }
 };
 using SpentByPhase = std::map<std::string, PhaseSeconds>;
 
@@ -36,6 +39,13 @@ class Spending {
   void end(const SpentByPhase& phases) {
     for (const auto& [phase, spent] : phases) by_phase_[phase] += spent;
     last_ = ranks_.report();
+  }
+  /// Takes these times away from their phases and gives them to another phase.
+  void reassign(const SpentByPhase& phases, const std::string& to) {
+    for (const auto& [phase, spent] : phases) {
+      by_phase_[phase] -= spent;
+      by_phase_[to] += spent;
+    }
   }
   const SpentByPhase& by_phase() const { return by_phase_; }
 

@@ -1,21 +1,27 @@
 // Makes a mesh with a target number of cells. Calibration is the time spent on meshes that miss the target.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
-#include "algorithms/construction.h"
-#include "isosurface/isosurface.h"
+#include "podm/label_image.h"
 #include "podm/meshing_options.h"
+#include "podm/meshing_report.h"
 
 namespace podm {
 
-/// Makes a mesh with these sizes, whose radius and delta are not 0.
-using MakeMesh = std::function<Refinement(const SizeOptions& sizes)>;
+/// The meshes of a search for a radius, made on one machine or on ranks.
+struct TrialMeshes {
+  std::function<StopReason(const SizeOptions& sizes)> make;  ///< `sizes`: radius and delta are not 0
+  std::function<std::uint64_t()> count_cells;                ///< cells of the last mesh
+  std::function<double()> seconds;                           ///< a clock
+};
 
 /// Makes meshes until one has the number of cells that `sizes` requests, or no radius brings it nearer, or
-/// the limit of trial meshes is reached. Returns the last mesh. `report` gets the search, and a warning if
-/// the target was missed. `threads`: 0 for all cores.
-Refinement refine_to_target(const LabelImage& image, const Isosurface& isosurface, const SizeOptions& sizes,
-                            int threads, const MakeMesh& make_mesh, MeshingReport& report);
+/// the limit of trial meshes is reached. `report` gets the search, and a warning if the target was missed.
+/// `threads`: 0 for all cores. Ranks that call it together make the same meshes if `meshes` returns the same
+/// reasons and numbers on all.
+void refine_to_target(const LabelImage& image, const SizeOptions& sizes, int threads,
+                      const TrialMeshes& meshes, MeshingReport& report);
 
 }  // namespace podm

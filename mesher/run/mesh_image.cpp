@@ -38,14 +38,25 @@ class Run {
 
  private:
   Refinement refine(MeshingReport& report) {
-    if (options_.sizes.target_elements > 0) {
-      const auto make_mesh = [&](const SizeOptions& sizes) { return refine_with(sizes); };
-      return refine_to_target(image_, phases_.isosurface(), options_.sizes, phases_.loop_threads(), make_mesh,
-                              report);
-    }
+    if (options_.sizes.target_elements > 0) return refine_to_target(report);
     SizeOptions sizes = options_.sizes;
     sizes.delta_mm = phases_.delta_mm();
     return refine_with(sizes);
+  }
+
+  Refinement refine_to_target(MeshingReport& report) {
+    Refinement refinement;
+    const auto make = [&](const SizeOptions& sizes) {
+      refinement = {};  // frees the memory of the mesh before
+      refinement = refine_with(sizes);
+      return refinement.stop_reason;
+    };
+    const auto count_cells = [&] {
+      return label_cells(*refinement.mesh, phases_.isosurface(), phases_.loop_threads());
+    };
+    podm::refine_to_target(image_, options_.sizes, phases_.loop_threads(),
+                           {make, count_cells, PhasesOfRun::seconds_on_the_wall}, report);
+    return refinement;
   }
 
   Refinement refine_with(const SizeOptions& sizes) {

@@ -186,7 +186,7 @@ class Meshes(OnRanks):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
-        self.assertIn("Not on ranks: --target-elements; the search", process.stdout)
+        self.assertIn("Not on ranks: --surface; no rank", process.stdout)
 
 
 class InProcess(OnRanks):
@@ -305,6 +305,14 @@ class Logs(OnRanks):
                 for log in logs:
                     log.unlink()
 
+    def test_the_logs_of_a_target_are_those_of_its_last_mesh(self):
+        process = self.mesh_in_process(3, "--target-elements", 20000, "--target-tolerance", 0.5, "--log", self.log)
+        self.assert_exit(process, 0)
+        record = self.last_record()
+        self.assertGreater(len(record["calibration"]["meshes"]), 0)
+        self.assertLess(abs(record["cells"] / 20000 - 1), 0.005)
+        self.assert_replays(self.logs(3))
+
     def test_a_run_that_is_stopped_equals_its_replay(self):
         for most in 6000, 60000:  # with coarser seeds, and without
             self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
@@ -355,7 +363,7 @@ class Refusals(OnRanks):
         self.assertEqual(self.files(), before)
 
     def test_what_ranks_do_not_have_yet(self):
-        for option, *words in (["--target-elements", 1000, "--target-elements"], ["--executor", "virtual", "virtual"],
+        for option, *words in (["--min-dihedral", 8, "--min-dihedral"], ["--executor", "virtual", "virtual"],
                                ["--algorithm", "podm-home", "algorithm podm-home"],
                                ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):

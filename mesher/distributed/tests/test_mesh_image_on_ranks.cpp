@@ -82,6 +82,46 @@ TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
   }
 }
 
+// A tolerance of half a percent requires more than one mesh. The times of all meshes add up to what the ranks
+// spent.
+TEST_P(MeshImageOnRanks, MeetATargetNumberOfCellsTogether) {
+  constexpr std::uint64_t kTarget = 20'000;
+  const LabelImage image = ball(40, 15);
+  MeshingOptions options = options_with_radius(0);
+  options.sizes.target_elements = kTarget;
+  options.sizes.target_tolerance_percent = 0.5;
+  std::vector<MeshingOnRanks> results(static_cast<std::size_t>(GetParam()));
+  run_ranks({.num_ranks = GetParam(), .one_at_a_time = true, .latency_s = 100}, [&](Communication& ranks) {
+    const double start_s = ranks.report().total_s();
+    MeshingOnRanks& result = results[static_cast<std::size_t>(ranks.rank())];
+    result = mesh_image_on_ranks(image, options, ranks);
+    const double spent_s = ranks.report().total_s() - start_s;
+    double sum_s = 0;
+    for (const auto& [phase, spent] : result.parts.at(static_cast<std::size_t>(ranks.rank())).spent)
+      sum_s += spent.computing_s + spent.waiting_s + spent.network_s;
+    EXPECT_LE(sum_s, spent_s);
+    EXPECT_GE(sum_s, 0.5 * spent_s);
+  });
+  for (const MeshingOnRanks& result : results) {
+    EXPECT_NEAR(static_cast<double>(result.piece.total_cells), 1.0 * kTarget, 0.005 * kTarget);
+    const Calibration& calibration = result.report.calibration.value();
+    EXPECT_GT(calibration.meshes.size(), 0u);
+    EXPECT_EQ(calibration.radius_mm, result.report.radius_mm);
+    EXPECT_EQ(calibration.radius_mm, results[0].report.radius_mm);
+    EXPECT_TRUE(result.report.guarantees.all_met());
+    EXPECT_TRUE(result.report.warnings.empty());
+    if (GetParam() > 1) {
+      EXPECT_GT(result.parts[0].spent.at("calibrate").network_s, 0);
+    }
+  }
+  // A mesh of the radius that was found has the same number of cells.
+  run_ranks({.num_ranks = GetParam(), .one_at_a_time = true}, [&](Communication& ranks) {
+    const MeshingOnRanks made =
+        mesh_image_on_ranks(image, options_with_radius(results[0].report.radius_mm), ranks);
+    EXPECT_EQ(made.piece.total_cells, results[0].piece.total_cells);
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Ranks, MeshImageOnRanks, testing::Values(1, 3, 4));
 
 TEST(RanksOfOneProcess, ShareAnIsosurfaceAndAreEachChargedWithIt) {
