@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/mix.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -16,12 +17,9 @@ constexpr double kSizeOverRadius = 3;
 constexpr double kJitter = 0.01;  // of the least side
 constexpr unsigned kMostDepth = 20;
 
-// (Steele, Lea, Flood, OOPSLA 2014: SplitMix.)
+// The generator SplitMix64, for numbers from -1 to 1.
 double next_in_unit_range(std::uint64_t& state) {
-  std::uint64_t z = state += 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
+  return static_cast<double>(mix(state += 0x9e3779b97f4a7c15u) >> 11) * 0x1p-52 - 1;
 }
 
 double gap(double low, double high, double other_low, double other_high) {

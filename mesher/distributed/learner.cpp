@@ -7,8 +7,10 @@
 
 #include "delaunay/lock_contract.h"
 #include "delaunay/walk.h"
+#include "geometry/point_hash.h"
 #include "podm/errors.h"
 #include "runtime/first_fault.h"
+#include "runtime/mix.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -16,13 +18,6 @@ namespace podm {
 namespace {
 
 constexpr double kTouching = 0;  // mm; the vertices come from a triangulation, so no two of them coincide
-
-std::uint64_t hash_of(const Point& p) {
-  std::uint64_t hash = 0;
-  for (const double x : {p.x, p.y, p.z})
-    hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
-  return (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
-}
 
 }  // namespace
 
@@ -218,13 +213,14 @@ std::vector<std::size_t> Learner::in_order(const std::vector<LearntVertex>& chan
   constexpr int kMostRounds = 10;
   constexpr std::size_t kLength = 1 << 12;
   std::vector<InOrder> places(changes.size());
-  parallel_for_ranges(
-      changes.size(), kLength, threads_, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Point& p = changes[i].point;
-          places[i] = {std::min(std::countl_zero(hash_of(p)), kMostRounds), grid_.place_on_curve(p), i};
-        }
-      });
+  parallel_for_ranges(changes.size(), kLength, threads_,
+                      [&](std::size_t begin, std::size_t end, std::size_t) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          const Point& p = changes[i].point;
+                          places[i] = {std::min(std::countl_zero(mix(PointHash()(p))), kMostRounds),
+                                       grid_.place_on_curve(p), i};
+                        }
+                      });
   std::sort(places.begin(), places.end());
   std::vector<std::size_t> order;
   order.reserve(places.size());

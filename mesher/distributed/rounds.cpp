@@ -110,6 +110,7 @@ class Rounds {
     refine_in_rounds();
     const Update last_update =
         complete(construction_.mesh(), exchange_, block(), kKnownRings, learner_.threads(), ranks_);
+    exchange_.check();
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
@@ -160,6 +161,7 @@ class Rounds {
     complete(construction_.mesh(), seeding, block(), kKnownRings, learner_.threads(), ranks_);
     num_seeds_ = seeding.num_inserted();
     exchange_.begin(blocks_->ranks(), seeding.known());
+    exchange_.check();
   }
 
   // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex. The
@@ -190,7 +192,10 @@ class Rounds {
       report.cubes = own.cubes().size();
       const double start_s = processor_seconds();
       std::vector<CellName> left;
-      if (round > 0) report.update = exchange_.update(wanted(own, here));
+      if (round > 0) {
+        report.update = exchange_.update(wanted(own, here));
+        exchange_.check();
+      }
       const Zone zone(own, exchange_.known(), kKnownRings, round == 0 ? kRoomInBlocks : 0);
       Construction::Entries entries = round == 0 ? std::move(first) : find(here, zone, left);
       drop_sound(entries, zone);

@@ -12,6 +12,8 @@
 //      are left (zones_of_round.h). They become wider from round to round. When one zone fills space its rank
 //      knows all vertices and defers nothing; therefore the rounds end.
 //   5  At the end each rank learns what other ranks changed in its block and around it.
+//
+// After each of these exchanges the ranks compare what they have where they overlap (overlap.h).
 #pragma once
 
 #include "algorithms/podm.h"

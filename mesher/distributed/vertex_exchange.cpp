@@ -4,15 +4,10 @@
 #include <unordered_map>
 
 #include "distributed/messages.h"
+#include "distributed/overlap.h"
 #include "runtime/parallel_collect.h"
 
 namespace podm {
-
-namespace {
-
-bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != VertexKind::kBox; }
-
-}  // namespace
 
 void VertexExchange::begin(const std::vector<int>& writer_of_cube, const CubeSet& known) {
   writer_of_ = writer_of_cube;
@@ -40,6 +35,10 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
   const std::vector<Bytes> received = ranks_.all_to_all(answers_to(ranks_.all_to_all(std::move(questions))));
   learner_.learn(differences(received, update), kReceivedInsertion, made);
   return update;
+}
+
+void VertexExchange::check() const {
+  check_overlap(learner_.mesh(), known_, writer_of_, learner_.threads(), ranks_);
 }
 
 // Returns, for each rank, the cubes that it requested and all vertices in them.

@@ -25,6 +25,8 @@ class VertexExchange : public VertexSource {
   /// Returns the rank that wrote each cube last.
   const std::vector<int>& writers() const { return writer_of_; }
   CubeSet known() const override { return known_; }
+  /// Compares the cubes that this rank knows with those of their writers (overlap.h). Collective.
+  void check() const;
   /// Collective.
   Update update(const CubeSet& wanted, std::vector<CellId>* made = nullptr) override;
 

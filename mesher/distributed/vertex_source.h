@@ -9,6 +9,9 @@
 
 namespace podm {
 
+/// Returns true for vertices that ranks exchange. All ranks have the corners of the virtual box.
+constexpr bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != VertexKind::kBox; }
+
 /// The cost of one update.
 struct Update {
   std::uint64_t cubes = 0;              // cubes received

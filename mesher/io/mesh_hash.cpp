@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "podm/mesh_io.h"
+#include "runtime/mix.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -13,13 +14,6 @@ namespace {
 
 constexpr std::size_t kChunk = 1 << 13;
 constexpr std::uint64_t kCell = 1, kFacet = 2;  // first values of the hashes of cells and facets
-
-// The finalizer of SplitMix64. (Steele, Lea, Flood, OOPSLA 2014.)
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  return x ^ x >> 31;
-}
 
 // Adds a number to a hash. The numbers are random themselves, so a final mix() after the last one suffices.
 std::uint64_t combine(std::uint64_t hash, std::uint64_t more) { return hash * 0x9e3779b97f4a7c15u + more; }
