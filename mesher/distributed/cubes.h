@@ -3,6 +3,7 @@
 // the grid are unbounded.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
@@ -21,6 +22,29 @@ using CubePlace = std::array<int, 3>;
 struct CubeRange {
   CubePlace low, high;
   int length(std::size_t axis) const { return high[axis] - low[axis]; }
+  bool is_empty() const { return length(0) <= 0 || length(1) <= 0 || length(2) <= 0; }
+  bool has(const CubePlace& at) const {
+    return low[0] <= at[0] && at[0] < high[0] && low[1] <= at[1] && at[1] < high[1] && low[2] <= at[2] &&
+           at[2] < high[2];
+  }
+  bool operator==(const CubeRange&) const = default;
+};
+
+/// Indices of a table with a value per cube of a range, which must not be empty.
+class CubeRangeIndex {
+ public:
+  explicit CubeRangeIndex(const CubeRange& range)
+      : low_(range.low), length_(range.length(0)), rows_(range.length(1)) {}
+  std::size_t operator()(const CubePlace& at) const {
+    return (static_cast<std::size_t>(at[2] - low_[2]) * static_cast<std::size_t>(rows_) +
+            static_cast<std::size_t>(at[1] - low_[1])) *
+               static_cast<std::size_t>(length_) +
+           static_cast<std::size_t>(at[0] - low_[0]);
+  }
+
+ private:
+  CubePlace low_;
+  int length_, rows_;
 };
 
 class CubeGrid {
@@ -33,7 +57,11 @@ class CubeGrid {
   const CubePlace& size() const { return size_; }
   CubeRange all() const { return {{0, 0, 0}, size_}; }
   /// Returns the range of a cube and all cubes that share a face, an edge or a corner with it.
-  CubeRange with_neighbors(const CubePlace& at) const;
+  CubeRange with_neighbors(const CubePlace& at) const {
+    return grown({at, {at[0] + 1, at[1] + 1, at[2] + 1}}, 1);
+  }
+  /// Returns a range with all cubes of the grid within `rings` cubes of it along each axis.
+  CubeRange grown(const CubeRange& range, int rings) const;
   double side_mm() const { return side_mm_; }
   CubePlace place_of(const Point& p) const {
     return {along(0, p.x - origin_.x), along(1, p.y - origin_.y), along(2, p.z - origin_.z)};
@@ -102,23 +130,25 @@ std::vector<std::uint64_t> CubeGrid::weights_below(const CubeRange& range, std::
   return below;
 }
 
-/// A set of cubes of a grid, which must outlive the set.
+/// A set of cubes of a grid, which must outlive the set. Its functions visit only the least range that holds
+/// all cubes ever inserted.
 class CubeSet {
  public:
-  explicit CubeSet(const CubeGrid& grid) : grid_(&grid), has_(grid.num_cubes()) {}
+  explicit CubeSet(const CubeGrid& grid)
+      : grid_(&grid), has_(grid.num_cubes()), range_{grid.size(), {0, 0, 0}} {}
   const CubeGrid& grid() const { return *grid_; }
+  /// A range that holds all cubes of the set; empty if no cube was ever inserted.
+  const CubeRange& range() const { return range_; }
   bool has(CubeId cube) const { return has_[cube] != 0; }
   bool has(const Point& p) const { return has(grid_->cube_at(p)); }
-  void insert(CubeId cube) { has_[cube] = 1; }
+  void insert(CubeId cube) { insert(cube, grid_->place_of(cube)); }
+  void insert(const CubePlace& at) { insert(grid_->id(at), at); }
   void erase(CubeId cube) { has_[cube] = 0; }
-  void insert_all() { has_.assign(has_.size(), 1); }
+  void insert_all();
   bool is_full() const;
   std::vector<CubeId> cubes() const;
   /// Returns the set with all cubes added that are within `rings` cubes of one of its cubes along each axis.
   CubeSet grown(int rings) const;
-  /// Returns, by cube, the number of rings of cubes around it that are in the set, up to `most` < 255; 0 for
-  /// cubes outside the set.
-  std::vector<std::uint8_t> depths(std::uint8_t most) const;
   /// Returns a component number per cube. Cubes of the set that share a face, an edge or a corner, directly
   /// or through other cubes of the set, get the same number. Numbers start at 0, in the order of first cubes.
   /// Cubes outside the set have kNone.
@@ -127,21 +157,43 @@ class CubeSet {
   /// Returns true if the set holds all cubes that a ball meets. Tests the cubes one by one.
   bool covers(const Point& center, double radius_mm) const {
     bool is_covered = true;
-    for_each_near(center, radius_mm, [&](CubeId cube) { return is_covered = has(cube); });
+    for_each_near(center, radius_mm, [&](const CubePlace& at) { return is_covered = has(grid_->id(at)); });
     return is_covered;
   }
   /// Adds all cubes that a ball meets.
   void insert(const Point& center, double radius_mm) {
-    for_each_near(center, radius_mm, [&](CubeId cube) { return insert(cube), true; });
+    for_each_near(center, radius_mm, [&](const CubePlace& at) { return insert(at), true; });
   }
 
  private:
-  // Calls visit(cube) until it returns false.
+  void insert(CubeId cube, const CubePlace& at) {
+    has_[cube] = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      range_.low[axis] = std::min(range_.low[axis], at[axis]);
+      range_.high[axis] = std::max(range_.high[axis], at[axis] + 1);
+    }
+  }
+  // Calls visit(place of a cube) until it returns false.
   template <class Visit>
   void for_each_near(const Point& center, double radius_mm, const Visit& visit) const;
 
   const CubeGrid* grid_;
   std::vector<std::uint8_t> has_;
+  CubeRange range_;
+};
+
+/// The depths of cubes in a set.
+class CubeDepths {
+ public:
+  /// `most`: the largest depth that is distinguished, at most 254.
+  CubeDepths(const CubeSet& set, std::uint8_t most);
+  /// Returns the number of rings of cubes around the cube that are in the set; 0 for cubes outside the set.
+  std::uint8_t operator()(const CubePlace& at) const { return range_.has(at) ? depths_[index_(at)] : 0; }
+
+ private:
+  CubeRange range_;
+  CubeRangeIndex index_;
+  std::vector<std::uint8_t> depths_;
 };
 
 /// Prefix sums that count the cubes of a set in any box with eight reads. (Crow, SIGGRAPH 1984.)
@@ -156,14 +208,11 @@ class CubeCounts {
   bool meets(const CubePlace& low, const CubePlace& high) const { return count(low, high) > 0; }
 
  private:
-  std::int64_t count(const CubePlace& low, const CubePlace& high) const;
-  std::uint32_t& below(int x, int y, int z) {
-    return below_[(static_cast<std::size_t>(z) * sizes_[1] + static_cast<std::size_t>(y)) * sizes_[0] +
-                  static_cast<std::size_t>(x)];
-  }
-  std::uint32_t below(int x, int y, int z) const { return const_cast<CubeCounts*>(this)->below(x, y, z); }
+  std::int64_t count(CubePlace low, CubePlace high) const;
+  std::uint32_t below(int x, int y, int z) const { return below_[index_({x, y, z})]; }
 
-  std::array<std::size_t, 2> sizes_;
+  CubeRange range_;
+  CubeRangeIndex index_;              // of the range with one more cube along each axis
   std::vector<std::uint32_t> below_;  // number of cubes of the set whose coordinates are all less
 };
 
@@ -175,7 +224,7 @@ void CubeSet::for_each_near(const Point& center, double radius_mm, const Visit& 
   for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
     for (at[1] = from[1]; at[1] <= to[1]; ++at[1])
       for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
-        if (grid_->squared_distance(at, center) <= radius_mm * radius_mm && !visit(grid_->id(at))) return;
+        if (grid_->squared_distance(at, center) <= radius_mm * radius_mm && !visit(std::as_const(at))) return;
 }
 
 }  // namespace podm

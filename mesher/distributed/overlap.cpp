@@ -25,26 +25,42 @@ struct Copy {
   VerticesOfCube vertices;
 };
 
-// Returns, by cube, the vertices in the cubes of the set.
-std::vector<VerticesOfCube> vertices_by_cube(const Mesh& mesh, const CubeSet& cubes, std::size_t threads) {
-  constexpr std::size_t kLength = 1 << 14;
-  std::vector<VerticesOfCube> of_cube(cubes.grid().num_cubes());
-  const auto add = [&](const Vertex& vertex) {
+// The vertices in the cubes of a set.
+class VerticesByCube {
+ public:
+  VerticesByCube(const Mesh& mesh, const CubeSet& cubes, std::size_t threads)
+      : cubes_(cubes), index_(cubes.range()) {
+    if (cubes.range().is_empty()) return;
+    const CubeRange& range = cubes.range();
+    of_cube_.resize(index_({range.high[0] - 1, range.high[1] - 1, range.high[2] - 1}) + 1);
+    constexpr std::size_t kLength = 1 << 14;
+    parallel_for_ranges(mesh.vertex_bound(), kLength, threads,
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t v = begin; v < end; ++v)
+                            add(mesh.vertex(static_cast<VertexId>(v)));
+                        });
+  }
+  /// The cube must be one of the set.
+  const VerticesOfCube& operator[](CubeId cube) const {
+    return of_cube_[index_(cubes_.grid().place_of(cube))];
+  }
+
+ private:
+  void add(const Vertex& vertex) {
     if (!is_shared(vertex.kind)) return;
-    const CubeId cube = cubes.grid().cube_at(vertex.point);
-    if (!cubes.has(cube)) return;
+    const CubePlace at = cubes_.grid().place_of(vertex.point);
+    if (!cubes_.has(cubes_.grid().id(at))) return;
+    VerticesOfCube& here = of_cube_[index_(at)];
     // Relaxed: sums are read after all threads have ended.
-    std::atomic_ref(of_cube[cube].number).fetch_add(1, std::memory_order_relaxed);
-    std::atomic_ref(of_cube[cube].hash)
-        .fetch_add(mix(PointHash()(vertex.point) + static_cast<std::uint64_t>(vertex.kind)),
-                   std::memory_order_relaxed);
-  };
-  parallel_for_ranges(mesh.vertex_bound(), kLength, threads,
-                      [&](std::size_t begin, std::size_t end, std::size_t) {
-                        for (std::size_t v = begin; v < end; ++v) add(mesh.vertex(static_cast<VertexId>(v)));
-                      });
-  return of_cube;
-}
+    std::atomic_ref(here.number).fetch_add(1, std::memory_order_relaxed);
+    std::atomic_ref(here.hash).fetch_add(
+        mix(PointHash()(vertex.point) + static_cast<std::uint64_t>(vertex.kind)), std::memory_order_relaxed);
+  }
+
+  const CubeSet& cubes_;
+  const CubeRangeIndex index_;
+  std::vector<VerticesOfCube> of_cube_;
+};
 
 [[noreturn]] void throw_difference(const CubeGrid& grid, const Copy& theirs, const VerticesOfCube& ours,
                                    int rank, int writer) {
@@ -60,7 +76,7 @@ std::vector<VerticesOfCube> vertices_by_cube(const Mesh& mesh, const CubeSet& cu
 
 void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int>& writer_of_cube,
                    std::size_t threads, Communication& ranks) {
-  const std::vector<VerticesOfCube> ours = vertices_by_cube(mesh, known, threads);
+  const VerticesByCube ours(mesh, known, threads);
   std::vector<std::vector<Copy>> copies(static_cast<std::size_t>(ranks.size()));
   for (const CubeId cube : known.cubes())
     if (const int writer = writer_of_cube[cube]; writer != ranks.rank())
@@ -73,7 +89,7 @@ void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int
     if (received[rank].empty()) continue;
     MessageReader reader(received[rank]);
     for (const Copy& theirs : reader.read<Copy>())
-      if (theirs.vertices != ours.at(theirs.cube))
+      if (theirs.vertices != ours[theirs.cube])
         throw_difference(known.grid(), theirs, ours[theirs.cube], static_cast<int>(rank), ranks.rank());
     reader.expect_end();
   }

@@ -20,8 +20,8 @@ double sure_radius_mm(const Cell& cell) {
 Zone::Zone(CubeSet own, CubeSet known, int rings, double room_over_radius)
     : own_(std::move(own)),
       known_(std::move(known)),
-      own_depth_(own_.depths(kMostDepth)),
-      known_depth_(known_.depths(kMostDepth)),
+      own_depth_(own_, kMostDepth),
+      known_depth_(known_, kMostDepth),
       squared_room_(room_over_radius * room_over_radius),
       is_all_known_(known_.is_full()),
       known_counts_(known_) {
@@ -35,7 +35,7 @@ Zone::Zone(CubeSet own, CubeSet known, int rings, double room_over_radius)
 
 bool Zone::is_ball_known(const Cell& cell) const {
   if (is_all_known_) return true;
-  if (cell.squared_radius < squared_reach_[known_depth_[known_.grid().cube_at(cell.center)]]) return true;
+  if (cell.squared_radius < squared_reach_[known_depth_(known_.grid().place_of(cell.center))]) return true;
   if (std::isnan(cell.squared_radius)) return false;
   return is_ball_known(cell.center, sure_radius_mm(cell));
 }

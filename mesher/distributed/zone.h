@@ -40,7 +40,7 @@ class Zone {
 
   bool has(const Point& p) const { return own_.has(p); }
   /// Returns a squared distance, mm^2: all points nearer to p than its root lie in the zone.
-  float squared_reach(const Point& p) const { return squared_reach_[own_depth_[own_.grid().cube_at(p)]]; }
+  float squared_reach(const Point& p) const { return squared_reach_[own_depth_(own_.grid().place_of(p))]; }
   /// Returns true if the two vertices that readers lock lie in the zone. Each neighbour then has a vertex
   /// there.
   bool may_read(const Mesh& mesh, const Cell& cell) const {
@@ -73,7 +73,7 @@ class Zone {
  private:
   static constexpr std::uint8_t kMostDepth = 31;
   CubeSet own_, known_;
-  std::vector<std::uint8_t> own_depth_, known_depth_;  // by cube: its depth in own_ and known_
+  CubeDepths own_depth_, known_depth_;
   std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
   double squared_room_;
   bool is_all_known_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -140,6 +141,8 @@ class Merge {
       vertices_.erase(found);
     }
     give_number(rank);
+    rank.expect(num_vertices_ <= std::numeric_limits<std::uint32_t>::max(),
+                "the logs of all ranks insert more than 2^32 vertices, more than a log can name");
     const auto id = static_cast<std::uint32_t>(num_vertices_++);
     rank.expect(vertices_.emplace(point_of(logged), Vertex{id, logged.kind}).second,
                 "its point is a vertex already");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 namespace podm::test {
 namespace {
@@ -38,14 +39,42 @@ class Zones : public testing::Test {
 TEST_F(Zones, DepthsAreRingsOfCubesInTheSet) {
   for (int i = 0; i < 20; ++i) {
     const CubeSet set = drawn_cubes();
-    const std::vector<std::uint8_t> depths = set.depths(5);
+    const CubeDepths depths(set, 5);
     CubeSet outside(grid_);
     for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
       if (!set.has(cube)) outside.insert(cube);
     for (int depth = 1; depth <= 5; ++depth) {
       const CubeSet near_outside = outside.grown(depth);
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-        ASSERT_EQ(depths[cube] >= depth, !near_outside.has(cube)) << "cube " << cube << ", depth " << depth;
+        ASSERT_EQ(depths(grid_.place_of(cube)) >= depth, !near_outside.has(cube))
+            << "cube " << cube << ", depth " << depth;
+    }
+  }
+}
+
+TEST_F(Zones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
+  for (int i = 0; i < 20; ++i) {
+    CubeSet set(grid_);
+    for (int cubes = draw(6) * draw(6); cubes > 0; --cubes)
+      set.insert(grid_.id({3 + draw(5), 2 + draw(5), 1 + draw(4)}));
+    const CubeCounts counts(set);
+    std::set<CubeId> found;
+    for (const CubeId cube : set.cubes()) found.insert(cube);
+    for (int k = 0; k < 200; ++k) {
+      CubeRange box;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = draw(grid_.size()[axis]);
+        box.high[axis] = std::min(grid_.size()[axis], box.low[axis] + 1 + draw(4));
+      }
+      int visited = 0, in_set = 0;
+      grid_.for_each(box, [&](CubeId cube, const CubePlace&) {
+        ++visited;
+        in_set += set.has(cube);
+        EXPECT_EQ(set.has(cube), found.contains(cube));
+      });
+      const CubePlace last{box.high[0] - 1, box.high[1] - 1, box.high[2] - 1};
+      EXPECT_EQ(counts.meets(box.low, last), in_set > 0);
+      EXPECT_EQ(counts.covers(box.low, last), in_set == visited);
     }
   }
 }
