@@ -10,6 +10,7 @@ folder=${1:-.}
 tests="mesh_image_tests algorithms_tests fault_tests communication_tests rounds_tests workers_tests refine_tests
 delaunay_tests octree_tests isosurface_tests files_tests mesh_io_tests image_io_tests runtime_tests"
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
+export LSAN_OPTIONS="suppressions=$PWD/ci/leaks_of_libraries.txt:print_suppressions=0"
 image=phantom:spheres@48
 
 run() {

@@ -119,7 +119,7 @@ TEST(PinPlan, NamesTheBadPieceAndWhatIsAllowed) {
       {"8192", "\"8192\""},   {"0-99999999999", "\"0-99999999999\""}};
   for (const auto& [plan, piece] : cases)
     EXPECT_THAT(
-        fault_of<PlacementError>([&] { PinPlan::parse(plan); }),
+        fault_of<PlacementError>([&plan = plan] { PinPlan::parse(plan); }),
         AllOf(HasSubstr(std::string("\"") + plan + "\": " + piece), HasSubstr("compact, scatter, none")));
 }
 
