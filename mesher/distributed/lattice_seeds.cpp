@@ -15,6 +15,8 @@ namespace {
 // 2 radii makes 1.5 to 3 % more cells than a mesh without seeds has, 3 radii 0.02 %.
 constexpr double kSizeOverRadius = 3;
 constexpr double kJitter = 0.01;  // of the least side
+// The largest side of a sparse leaf over its distance. Smaller ones cost more seeds than they save.
+constexpr double kSparseSideOverDistance = 4;
 constexpr unsigned kMostDepth = 20;
 
 // The generator SplitMix64, for numbers from -1 to 1.
@@ -30,18 +32,18 @@ double gap(double low, double high, double other_low, double other_high) {
 
 // The root's side is a power of two times the least side of leaves, which are therefore as large as allowed
 // where the bound is least.
-LatticeSeeds::LatticeSeeds(const Problem& problem, const Box& clamp, std::size_t threads, double coarser)
+LatticeSeeds::LatticeSeeds(const Problem& problem, const Box& box, std::size_t threads, double coarser)
     : problem_(problem),
-      clamp_(clamp),
+      box_(box),
       threads_(threads),
       radii_(radii_of(problem)),
       side_over_radius_(coarser * kSizeOverRadius) {
   const double least_side_mm = side_over_radius_ * radii_.least;
-  const Vector extent = clamp.high - clamp.low;
+  const Vector extent = box.high - box.low;
   root_side_mm_ = least_side_mm;
   while (root_side_mm_ < std::max({extent.x, extent.y, extent.z})) root_side_mm_ *= 2;
   const double half = root_side_mm_ / 2;
-  root_low_ = clamp.low + 0.5 * extent - Vector{half, half, half};
+  root_low_ = box.low + 0.5 * extent - Vector{half, half, half};
   jitter_mm_ = kJitter * least_side_mm;
 }
 
@@ -81,7 +83,7 @@ Point LatticeSeeds::point_of(MortonCode code) const {
   return root_low_ + unit_mm * Vector{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]} + jitter_mm_ * Vector{x, y, z};
 }
 
-// Descends level by level. Returns the corners and centers of the taken nodes within the clamp box, each
+// Descends level by level. Returns the corners and centers of the taken nodes within the box, each
 // once.
 template <class FateOf>
 std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
@@ -114,7 +116,7 @@ std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
   std::vector<Point> points;
   for (const MortonCode code : codes)
-    if (const Point p = point_of(code); is_in(clamp_, p)) points.push_back(p);
+    if (const Point p = point_of(code); is_in(box_, p)) points.push_back(p);
   return points;
 }
 
@@ -137,7 +139,8 @@ std::vector<Point> LatticeSeeds::sparse_around(const Box& box) const {
                                          gap(its.low.y, its.high.y, box.low.y, box.high.y),
                                          gap(its.low.z, its.high.z, box.low.z, box.high.z)});
     if (is_in(box, its.low) && is_in(box, its.high)) return Fate::kSkipped;
-    return side_mm(node) <= distance_mm || is_leaf(node) ? Fate::kTaken : Fate::kDivided;
+    const bool is_far = side_mm(node) <= kSparseSideOverDistance * distance_mm;
+    return is_far || is_leaf(node) ? Fate::kTaken : Fate::kDivided;
   });
 }
 

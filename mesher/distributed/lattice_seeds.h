@@ -11,13 +11,17 @@
 //
 //   Covering. Each point of a leaf with side S is within sqrt(5) / 4 S of a corner or of the center. The
 //   circumball of a cell has no seed in it. If its center is in a leaf, its radius is therefore at most 0.56
-//   S plus the jitter, whatever the sizes of the leaves around it. Leaves at the faces of the clamp box lack
-//   the seeds beyond it, and have larger balls. No proof rests on the size of balls: a rank inserts seeds
+//   S plus the jitter, whatever the sizes of the leaves around it. Leaves at the hull of the seeds lack the
+//   seeds beyond it, and have larger balls. No proof rests on the size of balls: a rank inserts seeds
 //   until the cells at its block are known (completion.h). Spacing. In a leaf the center is sqrt(3) / 2 S
 //   from the corners. A corner of a smaller leaf that touches a leaf of side S is at least S / 2 from its
 //   center. Seeds are therefore at least sqrt(3) / 2 of the least side apart, up to the jitter. With
 //   kSizeOverRadius = 3 this is more than I3 requires (rules.h). R6 removes seeds near the isosurface, as it
 //   removes circumcenters.
+//
+//   Hull. The balls of cells at the hull are nearly half-spaces. A rank with such a cell needs all seeds in
+//   all cubes that the ball meets, the cubes along a whole face of the grid. Seeds therefore reach far beyond
+//   the object, where leaves are large, and the grid begins there, too (kCubesAround in rounds.cpp).
 //
 // Each seed is moved by a small pseudo-random distance. Lattice points are degenerate: their conflict tests
 // would be decided in exact arithmetic.
@@ -33,11 +37,14 @@
 
 namespace podm {
 
+/// Returns a box around the clamp box, within its virtual box (refine/virtual_box.h).
+inline Box box_of_seeds(const Box& clamp) { return grown(clamp, 0.2 * distance(clamp.low, clamp.high)); }
+
 class LatticeSeeds {
  public:
-  /// Keeps a reference to the problem. Seeds lie within `clamp`. `threads`: at least 1. Leaves may be
-  /// `coarser` times as large as kSizeOverRadius says.
-  LatticeSeeds(const Problem& problem, const Box& clamp, std::size_t threads, double coarser = 1);
+  /// Keeps a reference to the problem. Seeds lie within `box`. `threads`: at least 1. Leaves may be `coarser`
+  /// times as large as kSizeOverRadius says.
+  LatticeSeeds(const Problem& problem, const Box& box, std::size_t threads, double coarser = 1);
 
   /// Returns all seeds in these cubes.
   std::vector<Point> in(const CubeSet& cubes) const;
@@ -60,7 +67,7 @@ class LatticeSeeds {
   std::vector<Point> collect(const FateOf& fate_of) const;
 
   const Problem& problem_;
-  const Box clamp_;
+  const Box box_;
   const std::size_t threads_;
   const Radii radii_;
   const double side_over_radius_;

@@ -24,6 +24,11 @@ namespace {
 
 // Number of rings of cubes around a zone that are known.
 constexpr int kKnownRings = 1;
+// Number of rings of cubes around a block whose seeds a rank inserts at once. Most balls of seeds lie there.
+constexpr int kSeededRings = 2;
+// Number of cubes of the grid around the object. Cubes at the faces of the grid are unbounded, and many cells
+// outside the object have balls there. With more cubes around the object these cubes have fewer vertices.
+constexpr int kCubesAround = 4;
 // A deferred cell also requests vertices within this many of its circumradii. A larger factor costs more than
 // it saves.
 constexpr double kKnownOverRadius = 1;
@@ -73,6 +78,10 @@ double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
                   std::min(kCubeOverRadius * radii.most, std::cbrt(share_mm3 / kCubesPerBlock)));
 }
 
+CubeGrid grid_around(const Box& object, double side_mm) {
+  return CubeGrid(grown(object, kCubesAround * side_mm), side_mm);
+}
+
 // Balls that have a point in common and are no larger than a given ball lie within two of its radii. With
 // this room around the refined cells, new poor cells that leave the zone would hardly reach the end of it.
 // Only blocks have this room, because the zones of later rounds are too narrow.
@@ -89,7 +98,7 @@ class Rounds {
         stop_(stop),
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
-        grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
+        grid_(grid_around(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size()))),
         learner_(construction_, grid_),
         exchange_(ranks, learner_, grid_) {
     if (options.algorithm == Algorithm::kPodm) return;
@@ -145,7 +154,7 @@ class Rounds {
     constexpr double kCellsPerSeed = 7, kMost = 1024;
     double coarser = is_over_anywhere() ? kMost : 1;
     for (; stop_.max_elements() > 0 && coarser < kMost; coarser *= 2) {
-      const LatticeSeeds seeds(problem_, levels_.clamp, learner_.threads(), coarser);
+      const LatticeSeeds seeds(problem_, box_of_seeds(levels_.clamp), learner_.threads(), coarser);
       std::array<std::uint64_t, 1> num_seeds{seeds.in(block()).size()};
       ranks_.sum(num_seeds);
       if (2 * kCellsPerSeed * static_cast<double>(num_seeds[0]) <= static_cast<double>(stop_.max_elements()))
@@ -156,9 +165,9 @@ class Rounds {
 
   // Inserts seeds until the cells with a vertex in the block are cells of the triangulation of all seeds.
   void seed() {
-    const LatticeSeeds seeds(problem_, levels_.clamp, learner_.threads(), seeds_within_limit());
+    const LatticeSeeds seeds(problem_, box_of_seeds(levels_.clamp), learner_.threads(), seeds_within_limit());
     Seeding seeding(seeds, learner_, block());
-    complete(construction_.mesh(), seeding, block(), kKnownRings, learner_.threads(), ranks_);
+    complete(construction_.mesh(), seeding, block(), kSeededRings, learner_.threads(), ranks_);
     num_seeds_ = seeding.num_inserted();
     exchange_.begin(blocks_->ranks(), seeding.known());
     exchange_.check();

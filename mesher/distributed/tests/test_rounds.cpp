@@ -80,11 +80,13 @@ class Ranks {
 
   int rank_of(const Point& p) const { return refined[0]->rank_of_cube[refined[0]->grid.cube_at(p)]; }
 
-  /// Returns the cells with a vertex in the rank's block and their neighbours, by their points.
+  /// Returns the cells with a vertex in the rank's block, other than a corner of the virtual box, and their
+  /// neighbours, by their points.
   std::vector<std::array<Point, 4>> cells_at_block(const Mesh& mesh, int rank) const {
     const auto is_at_block = [&](const Cell& cell) {
-      return std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                         [&](VertexId v) { return rank_of(mesh.point(v)) == rank; });
+      return std::any_of(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v) {
+        return mesh.vertex(v).kind != VertexKind::kBox && rank_of(mesh.point(v)) == rank;
+      });
     };
     std::vector<std::array<Point, 4>> cells;
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {
