@@ -344,6 +344,17 @@ class Rounds {
     return refine_with<NoLocks>(zone, entries, report);
   }
 
+  // Gives each worker an equal share. Cells that follow each other in the list are near each other, because
+  // seeds are inserted and names are looked up along a curve.
+  template <class Locks>
+  static void share_out(const Construction::Entries& entries, const Construction::Workers<Locks>& workers) {
+    const auto at = [&](std::size_t worker) {
+      return entries.begin() + static_cast<std::ptrdiff_t>(entries.size() * worker / workers.size());
+    };
+    for (std::size_t i = 0; i < workers.size(); ++i)
+      workers[i]->give(Construction::Entries(at(i), at(i + 1)));
+  }
+
   // Returns the cells that need vertices outside the zone.
   template <class Inner>
   std::vector<CellId> refine_with(const Zone& zone, const Construction::Entries& entries,
@@ -357,8 +368,8 @@ class Rounds {
           construction_.make_workers<ZoneLocks<Inner>>(levels_.final, construction_.num_workers());
       for (const auto& worker : workers) worker->locks().confine(zone);
       construction_.in_time(phase, construction_.num_workers(), [&](auto& time) {
-        refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), entries,
-               time);
+        share_out(entries, workers);
+        refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), {}, time);
       });
       for (const auto& worker : workers) {
         for (const std::uint64_t count : worker->counters().insertions_by_rule) report.insertions += count;
