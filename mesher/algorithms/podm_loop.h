@@ -69,8 +69,8 @@ bool refine(Worker<Locks>& worker, Coordination& coordination, Time& time,
   return is_done;
 }
 
-/// Refines these cells with the workers of a group. All workers start at once. Workers without cells beg
-/// until the first one has cells to share.
+/// Refines these cells, which the first worker gets, and those that workers have already. All workers start
+/// at once. Workers without cells beg until another one has cells to share.
 template <class Locks, class Time>
 void refine(Construction& construction, const Construction::Workers<Locks>& workers,
             const CoordinationOptions& options, const Construction::Entries& cells, Time& time) {

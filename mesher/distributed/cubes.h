@@ -30,7 +30,7 @@ struct CubeRange {
   bool operator==(const CubeRange&) const = default;
 };
 
-/// Indices of a table with a value per cube of a range, which must not be empty.
+/// Indices of a table with a value per cube of a range. An empty range has no index.
 class CubeRangeIndex {
  public:
   explicit CubeRangeIndex(const CubeRange& range)

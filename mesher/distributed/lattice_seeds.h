@@ -1,13 +1,13 @@
 // The first vertices of a mesh on ranks: a coarse lattice, which is a function of position. Every rank can
 // compute the vertices of any part of space, so none has to be sent.
 //
-// An octree divides a cube around the object. A cube of it is a leaf if its side is at most kSizeOverRadius
-// times the bound on the circumradius there. It is also a leaf if the isosurface is farther than its corners
-// and its label is unbounded, or background. This depends on the cube and on the image alone, so all ranks
-// agree. The seeds are the corners and the centers of the leaves: a body-centered cubic lattice where leaves
-// are equal. A corner or center of a cube that is no leaf is a corner of a smaller cube, and therefore a seed
-// as well. A rank may therefore end the division far from its block, and has fewer seeds there, but no other
-// ones.
+// An octree divides a cube around the object and the space beside it. A cube of it is a leaf if its side is
+// at most kSizeOverRadius times the bound on the circumradius there. It is also a leaf if the isosurface is
+// farther than its corners and its label is unbounded, or background. This depends on the cube and on the
+// image alone, so all ranks agree. The seeds are the corners and the centers of the leaves: a body-centered
+// cubic lattice where leaves are equal. A corner or center of a cube that is no leaf is a corner of a smaller
+// cube, and therefore a seed as well. A rank may therefore end the division far from its block, and has fewer
+// seeds there, but no other ones.
 //
 //   Covering. Each point of a leaf with side S is within sqrt(5) / 4 S of a corner or of the center. The
 //   circumball of a cell has no seed in it. If its center is in a leaf, its radius is therefore at most 0.56

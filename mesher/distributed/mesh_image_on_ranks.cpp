@@ -160,18 +160,21 @@ class RunOnRank {
   }
 
   void refine_to_target(MeshingReport& own) {
+    const auto begin = [&] {
+      std::optional<RadiusSearch> search;
+      do_collectively([&] { search.emplace(image_, options_.sizes, phases_.loop_threads()); }, ranks_);
+      return *search;
+    };
     const auto make = [&](const SizeOptions& sizes) {
-      spending_.end("calibrate");
-      if (refined_) {
-        spending_.reassign(refined_->spent, "calibrate");
-        refined_.reset();  // frees the memory of the mesh before
-      }
+      expect_agreement(
+          {{"radius for the target number of elements", fmt::format("{:a} mm", sizes.radius_mm)}}, ranks_);
+      if (refined_) spending_.reassign(refined_->spent, "calibrate");
+      refined_.reset();  // frees the memory of the mesh before
       refine_with(sizes, own);
       return reason_on_any_rank();
     };
     const auto count = [&] { return num_cells(); };
-    podm::refine_to_target(image_, options_.sizes, phases_.loop_threads(),
-                           {make, count, [&] { return ranks_.seconds(); }}, own);
+    podm::refine_to_target(options_.sizes, {begin, make, count, [&] { return ranks_.seconds(); }}, own);
   }
 
   StopReason reason_on_any_rank() const {
@@ -188,6 +191,7 @@ class RunOnRank {
 
   void refine_with(const SizeOptions& sizes, MeshingReport& own) {
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
+      spending_.end(options_.sizes.target_elements > 0 ? "calibrate" : "transform");
       if (ranks_.size() == 1) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();
       refined_.emplace(podm_distributed(problem, team,

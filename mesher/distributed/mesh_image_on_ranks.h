@@ -18,7 +18,8 @@ struct PartOfRank {
   std::uint64_t cells = 0, boundary_facets = 0;  ///< numbers in its piece
   std::uint64_t store_cells = 0;                 ///< number in its store at the end
   std::map<std::string, double> phases_s;
-  SpentByPhase spent;               ///< by the phases of rounds.h, "transform", "extract" and "measure"
+  SpentByPhase spent;               ///< by the phases of rounds.h, and others: "transform", "calibrate" if
+                                    ///< there is a target, "extract" and "measure"
   std::vector<RoundReport> rounds;  ///< empty on one rank
   std::uint64_t seeds = 0;          ///< vertices that it inserted before round 0
   Update last_update;               ///< the update that completed its block
@@ -29,7 +30,8 @@ struct MeshingOnRanks {
   std::uint64_t mesh_hash = 0;  ///< mesh_hash() of the whole mesh, the same on all ranks
   /// The report on the whole mesh, the same on all ranks. Counters and store cells are sums. Phases are means
   /// over ranks, which add up to the elapsed time. "exchange" is the part of refinement that is not refining,
-  /// including waiting for other ranks. The workers of all ranks are listed in the order of the ranks.
+  /// including waiting for other ranks. The workers of all ranks are listed in the order of the ranks. Only
+  /// the seconds of single trial meshes are those of this rank.
   MeshingReport report;
   std::vector<PartOfRank> parts;  ///< by rank
 };

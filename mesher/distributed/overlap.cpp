@@ -88,9 +88,14 @@ void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int
   for (std::size_t rank = 0; rank < received.size(); ++rank) {
     if (received[rank].empty()) continue;
     MessageReader reader(received[rank]);
-    for (const Copy& theirs : reader.read<Copy>())
+    for (const Copy& theirs : reader.read<Copy>()) {
+      if (!known.has(theirs.cube))
+        throw InternalError(
+            fmt::format("rank {} takes rank {} for the writer of cube {}, which it does not know", rank,
+                        ranks.rank(), theirs.cube));
       if (theirs.vertices != ours[theirs.cube])
         throw_difference(known.grid(), theirs, ours[theirs.cube], static_cast<int>(rank), ranks.rank());
+    }
     reader.expect_end();
   }
 }

@@ -187,6 +187,7 @@ std::pair<MeshingReport, std::vector<PartOfRank>> report_of_ranks(MeshingReport 
     for (const PartOfRank& of_rank : parts) seconds += of_rank.phases_s.at(phase);
     seconds /= static_cast<double>(parts.size());
   }
+  if (report.calibration) report.calibration->seconds = report.phases_s.at("calibrate");
   report.counters = sum_of(report.workers);
   return {std::move(report), std::move(parts)};
 }

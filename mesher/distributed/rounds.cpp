@@ -84,7 +84,7 @@ CubeGrid grid_around(const Box& object, double side_mm) {
 
 // Balls that have a point in common and are no larger than a given ball lie within two of its radii. With
 // this room around the refined cells, new poor cells that leave the zone would hardly reach the end of it.
-// Only blocks have this room, because the zones of later rounds are too narrow.
+// Only round 0 has this room, because the cells that it defers must be refined in later rounds.
 constexpr double kRoomInBlocks = 2;
 
 class Rounds {
@@ -202,13 +202,14 @@ class Rounds {
       const double start_s = processor_seconds();
       std::vector<CellName> left;
       if (round > 0) {
+        // A rank without cells learns its zone, too: it is the zone's writer from now on.
         report.update = exchange_.update(wanted(own, here));
         exchange_.check();
       }
       const Zone zone(own, exchange_.known(), kKnownRings, round == 0 ? kRoomInBlocks : 0);
       Construction::Entries entries = round == 0 ? std::move(first) : find(here, zone, left);
       drop_sound(entries, zone);
-      share_limit(!entries.empty());
+      share_limit(entries.size());
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
       spending_.end("exchange");
@@ -232,14 +233,15 @@ class Rounds {
     cells_reported_ = stop_.num_cells();
   }
 
-  // Divides the rest of the cell limit among the ranks that have work.
-  void share_limit(bool has_work) {
+  // Divides the rest of the cell limit among the ranks by the numbers of cells that they begin with.
+  void share_limit(std::size_t num_entries) {
     const std::int64_t more = stop_.num_cells() - cells_reported_;
-    std::array<std::uint64_t, 2> sums{static_cast<std::uint64_t>(more), has_work ? 1u : 0u};
+    std::array<std::uint64_t, 2> sums{static_cast<std::uint64_t>(more), num_entries};
     ranks_.sum(sums);  // modulo 2^64, so negative numbers add up as well
     cells_reported_ += more;
     cells_of_all_ += static_cast<std::int64_t>(sums[0]);
-    stop_.share_limit(cells_of_all_, std::max(1, static_cast<int>(sums[1])));
+    stop_.share_limit(cells_of_all_, static_cast<double>(num_entries) /
+                                         static_cast<double>(std::max<std::uint64_t>(1, sums[1])));
   }
 
   CubeSet cubes_of(int rank, const std::vector<int>& rank_of_cube) const {
@@ -344,8 +346,8 @@ class Rounds {
     return refine_with<NoLocks>(zone, entries, report);
   }
 
-  // Gives each worker an equal share. Cells that follow each other in the list are near each other, because
-  // seeds are inserted and names are looked up along a curve.
+  // Gives each worker an equal share. Most cells that follow each other in the list are near each other:
+  // names are looked up along a curve, and most of the seeds are inserted along it.
   template <class Locks>
   static void share_out(const Construction::Entries& entries, const Construction::Workers<Locks>& workers) {
     const auto at = [&](std::size_t worker) {

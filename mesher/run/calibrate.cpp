@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prediction/radius_search.h"
-
 namespace podm {
 
 namespace {
@@ -22,12 +20,11 @@ bool is_near(std::uint64_t cells, const SizeOptions& sizes) {
 
 // If the first mesh with the predicted radius misses the target, its number of cells gives the error of the
 // prediction. A further mesh is then made with a corrected radius.
-void refine_to_target(const LabelImage& image, const SizeOptions& sizes, int threads,
-                      const TrialMeshes& meshes, MeshingReport& report) {
+void refine_to_target(const SizeOptions& sizes, const TrialMeshes& meshes, MeshingReport& report) {
   const double start_s = meshes.seconds();
   Calibration& calibration = report.calibration.emplace();
   calibration.target_elements = sizes.target_elements;
-  RadiusSearch search(image, sizes, threads);
+  RadiusSearch search = meshes.begin_search();
   for (;;) {
     const double mesh_start_s = meshes.seconds();
     calibration.seconds = mesh_start_s - start_s;

@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <functional>
 
-#include "podm/label_image.h"
 #include "podm/meshing_options.h"
 #include "podm/meshing_report.h"
+#include "prediction/radius_search.h"
 
 namespace podm {
 
 /// The meshes of a search for a radius, made on one machine or on ranks.
 struct TrialMeshes {
+  std::function<RadiusSearch()> begin_search;
   std::function<StopReason(const SizeOptions& sizes)> make;  ///< `sizes`: radius and delta are not 0
   std::function<std::uint64_t()> count_cells;                ///< cells of the last mesh
   std::function<double()> seconds;                           ///< a clock
@@ -19,9 +20,7 @@ struct TrialMeshes {
 
 /// Makes meshes until one has the number of cells that `sizes` requests, or no radius brings it nearer, or
 /// the limit of trial meshes is reached. `report` gets the search, and a warning if the target was missed.
-/// `threads`: 0 for all cores. Ranks that call it together make the same meshes if `meshes` returns the same
-/// reasons and numbers on all.
-void refine_to_target(const LabelImage& image, const SizeOptions& sizes, int threads,
-                      const TrialMeshes& meshes, MeshingReport& report);
+/// Ranks that call it together make the same meshes if `meshes` returns the same reasons and numbers on all.
+void refine_to_target(const SizeOptions& sizes, const TrialMeshes& meshes, MeshingReport& report);
 
 }  // namespace podm

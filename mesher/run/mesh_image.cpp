@@ -54,8 +54,9 @@ class Run {
     const auto count_cells = [&] {
       return label_cells(*refinement.mesh, phases_.isosurface(), phases_.loop_threads());
     };
-    podm::refine_to_target(image_, options_.sizes, phases_.loop_threads(),
-                           {make, count_cells, PhasesOfRun::seconds_on_the_wall}, report);
+    const auto begin = [&] { return RadiusSearch(image_, options_.sizes, phases_.loop_threads()); };
+    podm::refine_to_target(options_.sizes, {begin, make, count_cells, PhasesOfRun::seconds_on_the_wall},
+                           report);
     return refinement;
   }
 

@@ -380,6 +380,8 @@ class Refusals(OnRanks):
                                "rank 0 of 3", "none/run.log.0")
         self.assert_all_refuse([*mesh, self.folder / "none.nii", "-o", self.out], "none.nii")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radios", 3], "unknown option '--radios'")
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--target-elements", 100, "--size-near", "1,0=1:3"],
+                               "a target of 100 elements")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radius", 3, "--delta", 1000], "--delta")
 
     def test_ranks_that_do_not_ask_for_the_same(self):

@@ -19,9 +19,9 @@ void StopControl::check_limits() {
   }
 }
 
-void StopControl::share_limit(std::int64_t cells_of_all, int num_shares) {
+void StopControl::share_limit(std::int64_t cells_of_all, double share) {
   const std::int64_t left = std::max<std::int64_t>(0, max_elements_ - cells_of_all);
-  max_cells_ = num_cells_ + left / num_shares;
+  max_cells_ = num_cells_ + static_cast<std::int64_t>(share * static_cast<double>(left));
 }
 
 void StopControl::end(StopReason reason) {

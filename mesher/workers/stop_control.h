@@ -31,9 +31,9 @@ class StopControl {
         observe_(std::move(observe)),
         on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
-  /// All stores together have `cells_of_all` cells. From now on this store may grow by one of `num_shares`
-  /// equal shares of what the limit leaves. To be called between phases.
-  void share_limit(std::int64_t cells_of_all, int num_shares);
+  /// All stores together have `cells_of_all` cells. From now on this store may grow by `share`, from
+  /// 0 to 1, of what the limit leaves. To be called between phases.
+  void share_limit(std::int64_t cells_of_all, double share);
   /// The most cells of all stores together; 0: any number.
   std::int64_t max_elements() const { return max_elements_; }
   /// The store has `more` additional cells.

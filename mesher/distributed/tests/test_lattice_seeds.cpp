@@ -43,7 +43,7 @@ class Seeds : public testing::TestWithParam<SeededCase> {
                          .cell_capacity = 1 << 20};
   const Box clamp_ = grown(problem_.object, 6);
   const CubeGrid grid_{problem_.object, 2};
-  const LatticeSeeds seeds_{problem_, clamp_, 1};
+  const LatticeSeeds seeds_{problem_, box_of_seeds(clamp_), 1};
   const std::vector<Point> all_ = seeds_.in(all_cubes());
 };
 
@@ -55,7 +55,7 @@ TEST_P(Seeds, OfPartsAreThoseOfTheWhole) {
     for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) parts[random() % 3].insert(cube);
     std::vector<Point> joined;
     for (const CubeSet& part : parts) {
-      const std::vector<Point> some = LatticeSeeds(problem_, clamp_, 1 + random() % 3).in(part);
+      const std::vector<Point> some = LatticeSeeds(problem_, box_of_seeds(clamp_), 1 + random() % 3).in(part);
       for (const Point& p : some) EXPECT_TRUE(part.has(p));
       joined.insert(joined.end(), some.begin(), some.end());
     }

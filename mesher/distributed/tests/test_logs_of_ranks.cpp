@@ -266,6 +266,7 @@ TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
     logs_ = sound();
     OperationBatch& all = log(random() % 3);
     LoggedOperation& entry = all.operations[random() % all.operations.size()];
+    const bool is_seed = (entry.kind & kSeed) != 0;
     switch (random() % 4) {
       case 0:
         entry.vertex = static_cast<std::uint32_t>(random() % 100);
@@ -279,7 +280,6 @@ TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
       default:
         all.removed[random() % all.removed.size()] = static_cast<std::uint32_t>(random() % 1000);
     }
-    const bool is_seed = (entry.kind & kSeed) != 0;
     (is_seed ? num_equal_seeds : num_equal) += verdict() == "equal";
   }
   EXPECT_LT(num_equal, 6);         // a vertex may by chance have the number of another vertex in a log

@@ -91,6 +91,9 @@ TEST_P(MeshImageOnRanks, MeetATargetNumberOfCellsTogether) {
   options.sizes.target_elements = kTarget;
   options.sizes.target_tolerance_percent = 0.5;
   std::vector<MeshingOnRanks> results(static_cast<std::size_t>(GetParam()));
+  // Time of the collectives before the first phase and after the last.
+  const double before_and_after_s =
+      GetParam() == 1 ? 0.5 : 100 * 6 * std::bit_width(results.size() - 1) + 0.5;
   run_ranks({.num_ranks = GetParam(), .one_at_a_time = true, .latency_s = 100}, [&](Communication& ranks) {
     const double start_s = ranks.report().total_s();
     MeshingOnRanks& result = results[static_cast<std::size_t>(ranks.rank())];
@@ -100,7 +103,7 @@ TEST_P(MeshImageOnRanks, MeetATargetNumberOfCellsTogether) {
     for (const auto& [phase, spent] : result.parts.at(static_cast<std::size_t>(ranks.rank())).spent)
       sum_s += spent.computing_s + spent.waiting_s + spent.network_s;
     EXPECT_LE(sum_s, spent_s);
-    EXPECT_GE(sum_s, 0.5 * spent_s);
+    EXPECT_GE(sum_s, spent_s - before_and_after_s);
   });
   for (const MeshingOnRanks& result : results) {
     EXPECT_NEAR(static_cast<double>(result.piece.total_cells), 1.0 * kTarget, 0.005 * kTarget);
