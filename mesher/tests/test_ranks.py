@@ -420,7 +420,7 @@ class EarlyEnds(OnRanks):
     def test_time_limit(self):
         self.assert_ended_early(self.mesh(2, *ENDLESS[1:], "--max-seconds", 2, image=ENDLESS[0]), "time limit")
 
-    def test_element_limit_is_shared_evenly(self):
+    def test_element_limit_is_shared(self):
         self.assert_ended_early(self.mesh(3, *ENDLESS[1:], "--max-elements", 60000, image=ENDLESS[0]), "element limit")
         self.assertLessEqual(self.last_record()["cells"], 60000)
 
