@@ -45,10 +45,11 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if requested. On one rank
 /// it runs the algorithm itself. Collective: image and options are the same on all ranks, except threads and
 /// memory, which each rank chooses. Ranks share the rest of max_elements in proportion to the cells that they
-/// begin a round with. A rank that exceeds its share ends the run. Throws RefusedByAll (distributed/collective_errors.h) if images or options differ
-/// between ranks, or if options are bad or not supported on ranks. If memory runs out between rounds, that
-/// rank throws std::bad_alloc, and the caller must end the other ranks. Ranks of one process may share the
-/// isosurface if they have the same image; otherwise each rank makes its own.
+/// begin a round with. A rank that exceeds its share ends the run. Throws RefusedByAll
+/// (distributed/collective_errors.h) if images or options differ between ranks, or if options are bad or not
+/// supported on ranks. If memory runs out between rounds, that rank throws std::bad_alloc, and the caller
+/// must end the other ranks. Ranks of one process may share the isosurface if they have the same image;
+/// otherwise each rank makes its own.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
                                    std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr);
