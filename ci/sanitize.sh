@@ -26,6 +26,6 @@ for sanitizer in asan tsan; do
   for test in $tests; do
     run "$build/bin/$test" --gtest_brief=1
   done
-  run "$build/bin/podm" mesh "$image" --threads 4 --radius 4 --log "$build/run.log" -o "$build/run.vtu"
+  run "$build/bin/podm" mesh "$image" --threads 4 --oversubscribe --radius 4 --log "$build/run.log" -o "$build/run.vtu"
   run "$build/bin/podm" replay "$image" "$build/run.log"
 done

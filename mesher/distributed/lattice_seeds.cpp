@@ -99,7 +99,8 @@ std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
                         });
     next.clear();
     for (std::size_t i = 0; i < level.size(); ++i) {
-      const auto& [low, depth] = level[i];
+      const GridPoint& low = level[i].low;
+      const unsigned depth = level[i].depth;
       const std::uint32_t half = 1u << (kMostDepth - depth - 1);
       const auto at = [&](unsigned corner, std::uint32_t step) {
         return GridPoint{low[0] + (corner & 1) * step, low[1] + (corner >> 1 & 1) * step,

@@ -224,12 +224,11 @@ TEST_P(ZonesOfRound, AreCutWhereTheyAreLargeAndTheRoundIsEarly) {
     num_cells[small] = 1;
     num_cells[large] = 1000;
   }
-  const auto& [rank_of, are_connected] =
-      zones_of_round(GetParam(), blocks_, waiting, num_cells, blocks_.ranks(), load_);
-  EXPECT_EQ(are_connected, GetParam() >= kRoundOfConnected);
+  const Zones zones = zones_of_round(GetParam(), blocks_, waiting, num_cells, blocks_.ranks(), load_);
+  EXPECT_EQ(zones.are_connected, GetParam() >= kRoundOfConnected);
   const auto ranks_along = [&](int y, int z) {
     std::set<int> ranks;
-    for (int x = 0; x < 60; ++x) ranks.insert(rank_of[grid_.id({x, y, z})]);
+    for (int x = 0; x < 60; ++x) ranks.insert(zones.rank_of_cube[grid_.id({x, y, z})]);
     return ranks.size();
   };
   if (!is_shifted()) {
