@@ -20,7 +20,7 @@ constexpr std::uint64_t kStepsToYield = 256;
 
 // The cells that attempts of fibres rely on. Reads of threads without fibres are not recorded.
 using Reads = std::unordered_map<const Fibre*, std::unordered_set<std::uint32_t>>;
-thread_local Reads reads;
+thread_local Reads reads_of_fibres;
 
 // Each thread has its own seed. Relaxed: an order between threads would hide their races from the thread
 // sanitizer.
@@ -41,18 +41,18 @@ void note_read(std::uint32_t cell) {
   step();
   const Fibre* const self = Fibre::current();
   if (self != nullptr && self->is_limited())
-    reads[self].insert(cell);  // an attempt, not another use of the store
+    reads_of_fibres[self].insert(cell);  // an attempt, not another use of the store
 }
 
 void forget_reads() {
-  if (const Fibre* const self = Fibre::current()) reads.erase(self);
+  if (const Fibre* const self = Fibre::current()) reads_of_fibres.erase(self);
 }
 
 void note_replaced(std::uint32_t cell) {
   const Fibre* const self = Fibre::current();
-  for (const auto& [other, cells] : reads) {
+  for (const auto& [other, cells] : reads_of_fibres) {
     if (other == self || !cells.contains(cell)) continue;
-    reads.clear();  // the run ends here
+    reads_of_fibres.clear();  // the run ends here
     throw InternalError("cell " + std::to_string(cell) + " is replaced while another worker reads it");
   }
 }
