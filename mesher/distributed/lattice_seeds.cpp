@@ -83,8 +83,7 @@ Point LatticeSeeds::point_of(MortonCode code) const {
   return root_low_ + unit_mm * Vector{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]} + jitter_mm_ * Vector{x, y, z};
 }
 
-// Descends level by level. Returns the corners and centers of the taken nodes within the box, each
-// once.
+// Descends level by level. Returns the corners and centers of the taken nodes within the box, each once.
 template <class FateOf>
 std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
   constexpr std::size_t kLength = 64;

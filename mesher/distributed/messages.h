@@ -29,6 +29,15 @@ void append(Bytes& message, const std::vector<T>& values) {
   append(message, std::span<const T>(values));
 }
 
+/// Returns a message of each vector, in order. No values make an empty message.
+template <class T>
+std::vector<Bytes> messages_of(const std::vector<std::vector<T>>& values) {
+  std::vector<Bytes> messages(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!values[i].empty()) append(messages[i], values[i]);
+  return messages;
+}
+
 /// Reads the vectors of a message in the order in which they were appended. The message must outlive the
 /// reader.
 class MessageReader {
@@ -65,5 +74,15 @@ class MessageReader {
 
   std::span<const std::byte> rest_;
 };
+
+/// Returns the values of a message of messages_of().
+template <class T>
+std::vector<T> values_of(const Bytes& message) {
+  if (message.empty()) return {};
+  MessageReader reader(message);
+  std::vector<T> values = reader.read<T>();
+  reader.expect_end();
+  return values;
+}
 
 }  // namespace podm

@@ -81,14 +81,9 @@ void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int
   for (const CubeId cube : known.cubes())
     if (const int writer = writer_of_cube[cube]; writer != ranks.rank())
       copies[static_cast<std::size_t>(writer)].push_back({cube, ours[cube]});
-  std::vector<Bytes> messages(copies.size());
-  for (std::size_t rank = 0; rank < copies.size(); ++rank)
-    if (!copies[rank].empty()) append(messages[rank], copies[rank]);
-  const std::vector<Bytes> received = ranks.all_to_all(std::move(messages));
+  const std::vector<Bytes> received = ranks.all_to_all(messages_of(copies));
   for (std::size_t rank = 0; rank < received.size(); ++rank) {
-    if (received[rank].empty()) continue;
-    MessageReader reader(received[rank]);
-    for (const Copy& theirs : reader.read<Copy>()) {
+    for (const Copy& theirs : values_of<Copy>(received[rank])) {
       if (!known.has(theirs.cube))
         throw InternalError(
             fmt::format("rank {} takes rank {} for the writer of cube {}, which it does not know", rank,
@@ -96,7 +91,6 @@ void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int
       if (theirs.vertices != ours[theirs.cube])
         throw_difference(known.grid(), theirs, ours[theirs.cube], static_cast<int>(rank), ranks.rank());
     }
-    reader.expect_end();
   }
 }
 

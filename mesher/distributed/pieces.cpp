@@ -210,18 +210,6 @@ class PieceOfMesh {
     return number_of;
   }
 
-  template <class Value>
-  static std::vector<Bytes> messages_of(const std::vector<std::vector<Value>>& values) {
-    std::vector<Bytes> messages(values.size());
-    for (std::size_t rank = 0; rank < values.size(); ++rank)
-      if (!values[rank].empty()) append(messages[rank], values[rank]);
-    return messages;
-  }
-  template <class Value>
-  static std::vector<Value> values_of(const Bytes& message) {
-    return message.empty() ? std::vector<Value>() : MessageReader(message).read<Value>();
-  }
-
   static constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
   static constexpr std::size_t kLength = 1 << 14;  // ids that a thread takes at a time
 

@@ -427,13 +427,9 @@ class Rounds {
   Ball ball_of(const CellName& name) const { return podm::ball_of(name, construction_.mesh().extent()); }
 
   std::vector<CellName> exchanged(const std::vector<std::vector<CellName>>& names) {
-    std::vector<Bytes> messages(names.size());
-    for (std::size_t rank = 0; rank < names.size(); ++rank)
-      if (!names[rank].empty()) append(messages[rank], names[rank]);
     std::vector<CellName> here;
-    for (const Bytes& received : ranks_.all_to_all(std::move(messages))) {
-      if (received.empty()) continue;
-      const auto more = MessageReader(received).read<CellName>();
+    for (const Bytes& received : ranks_.all_to_all(messages_of(names))) {
+      const auto more = values_of<CellName>(received);
       here.insert(here.end(), more.begin(), more.end());
     }
     return here;

@@ -29,10 +29,7 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
     known_.insert(cube);
     ++update.cubes;
   }
-  std::vector<Bytes> questions(asked.size());
-  for (std::size_t rank = 0; rank < asked.size(); ++rank)
-    if (!asked[rank].empty()) append(questions[rank], asked[rank]);
-  const std::vector<Bytes> received = ranks_.all_to_all(answers_to(ranks_.all_to_all(std::move(questions))));
+  const std::vector<Bytes> received = ranks_.all_to_all(answers_to(ranks_.all_to_all(messages_of(asked))));
   learner_.learn(differences(received, update), kReceivedInsertion, made);
   return update;
 }
