@@ -291,6 +291,8 @@ void refuse_options_excluded_by_ranks(const TomlSection& section, const Json& op
   need(kCarrier, kRanks, options.contains(kRanks));
   need(kPerRank, kRanks, options.contains(kRanks));
   need(kNetwork, "ranks of carrier \"in-process\"", options.value(kCarrier, "") == kInProcess);
+  if (options.value(kCarrier, "") == kMpi && options.value("executor", "") == "virtual")
+    section.fail("executor", "virtual time of ranks needs carrier \"in-process\"");
   if (!options.contains(kRanks)) return;
   for (const MesherOption& option : mesher_options())
     if (options.contains(option.key) &&

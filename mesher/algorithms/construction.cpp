@@ -2,6 +2,7 @@
 
 #include "algorithms/memory_model.h"
 #include "refine/virtual_box.h"
+#include "runtime/virtual_threads.h"
 
 namespace podm {
 
@@ -23,6 +24,16 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
     }
     return starting_threads(num_workers());
   });
+}
+
+// On a rank in virtual time the schedule of virtual time decides how busy the workers are. The processor
+// seconds of their work are those that it took here.
+void Construction::note_virtual_time(const std::string& phase, const VirtualTime& time, double processor_s) {
+  result_.virtual_phases_s[phase] += time.now_s();
+  result_.virtual_spending += time.spending();
+  VirtualThreads* const threads = VirtualThreads::current();
+  if (threads != nullptr && time.busy_s() > 0)
+    threads->replace(processor_s, processor_s * time.now_s() / time.busy_s());
 }
 
 Construction::Entries Construction::all_cells() const {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "podm/errors.h"
+#include "runtime/virtual_threads.h"
 
 namespace podm {
 
@@ -54,7 +55,8 @@ bool is_of_this_machine(const TeamOptions& options) {
 }
 
 int loop_threads(const TeamOptions& options) {
-  return options.executor == Executor::kVirtual ? 0 : options.threads;
+  const bool are_virtual = options.executor == Executor::kVirtual;
+  return are_virtual && VirtualThreads::current() == nullptr ? 0 : options.threads;
 }
 
 void check_team_size(const TeamOptions& options, Algorithm algorithm) {

@@ -12,8 +12,8 @@ namespace podm {
 /// True if workers are threads of this machine, neither virtual nor those of a described machine.
 bool is_of_this_machine(const TeamOptions& options);
 
-/// Returns the threads of all phases except refinement; 0: all cores. The threads of virtual time are not
-/// threads of this machine.
+/// Returns the threads of all phases except refinement; 0: all cores. The workers of virtual time are not
+/// threads of this machine, unless loops are virtual as well (runtime/virtual_threads.h).
 int loop_threads(const TeamOptions& options);
 
 /// Throws InputError if numbers of threads contradict each other or the algorithm.

@@ -15,6 +15,7 @@
 
 #include "distributed/rank_failure.h"
 #include "runtime/processor_seconds.h"
+#include "runtime/virtual_threads.h"
 
 namespace podm {
 namespace {
@@ -59,6 +60,7 @@ struct RankState {
   Part* part = nullptr;  // input to the collective in which it waits
   double since_s = 0;    // processor seconds of its thread that its clock already includes
   double clock_s = 0;
+  VirtualThreads threads;
   RankReport report;
 
   void charge(double seconds) {
@@ -67,7 +69,7 @@ struct RankState {
   }
   void look_at_processor() {
     const double now_s = processor_seconds();
-    charge(now_s - since_s);
+    charge(now_s - since_s - threads.take_saved_s());
     since_s = now_s;
   }
 };
@@ -79,6 +81,7 @@ class MeetingPlace {
   explicit MeetingPlace(const InProcessOptions& options);
 
   int size() const { return options_.num_ranks; }
+  bool has_virtual_threads() const { return options_.has_virtual_threads; }
   RankState& state(int rank) { return ranks_[static_cast<std::size_t>(rank)]; }
   const std::optional<RankFailure>& failure() const { return failure_; }
   std::vector<RankReport> reports() const;
@@ -375,6 +378,8 @@ class InProcessRank final : public Communication {
 };
 
 void run_rank(MeetingPlace& place, int rank, const std::function<void(Communication&)>& body) try {
+  std::optional<VirtualThreads::Scope> threads;
+  if (place.has_virtual_threads()) threads.emplace(place.state(rank).threads);
   place.begin(rank);
   InProcessRank communication(place, rank);
   body(communication);

@@ -2,9 +2,11 @@
 // nodes.
 //
 // Each rank has a virtual clock. Between collectives it advances by the processor time of the rank's thread
-// and by the time that the rank charges. In a collective every clock is set to the latest clock of all ranks.
-// It then advances by the simulated time on the network, with latency L, B bytes per second, P ranks and s =
-// ceil(log2 P) steps (binomial trees and recursive doubling):
+// and by the time that the rank charges. If the rank's other threads are virtual, too, the clock advances by
+// the time that all of them take (runtime/virtual_threads.h). Otherwise it does not include them. In a
+// collective every clock is set to the latest clock of all ranks. It then advances by the simulated time on
+// the network, with latency L, B bytes per second, P ranks and s = ceil(log2 P) steps (binomial trees and
+// recursive doubling):
 //
 //   barrier        s L
 //   sum, maximum   s (L + bytes / B)
@@ -31,6 +33,7 @@ struct InProcessOptions {
   /// True: one rank computes at a time, from one collective to the next, so that many ranks on few processors
   /// do not slow each other down. False: the system schedules the ranks.
   bool one_at_a_time = false;
+  bool has_virtual_threads = false;  ///< the threads of a rank are virtual
   /// Draws the order in which ranks compute, anew after every collective, if one rank computes at a time.
   std::uint64_t seed = 0;
   double latency_s = 0;

@@ -18,6 +18,7 @@
 #include "run/extract_mesh.h"
 #include "run/measure_quality.h"
 #include "run/phases_of_run.h"
+#include "runtime/virtual_threads.h"
 
 namespace podm {
 
@@ -42,7 +43,8 @@ bool is_default(std::string_view name, const Value& value) {
 
 void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
-  refuse(options.team.executor == Executor::kVirtual, "virtual time");
+  if (options.team.executor == Executor::kVirtual && VirtualThreads::current() == nullptr)
+    throw InputError("virtual time needs ranks that are threads of one process (--in-process)");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
   for_each_option(options, [](const Declaration& of, const auto& value) {
     refuse(of.not_on_ranks && !is_default(of.name, value), spelled(of));

@@ -38,8 +38,8 @@ struct MeshingOnRanks {
 
 using SharedIsosurface = SharedValue<Isosurface>;
 
-/// Throws InputError on options that ranks do not support: virtual workers, kPodmHome, schedules, dihedral
-/// bounds, optimisation.
+/// Throws InputError on options that ranks do not support: kPodmHome, schedules, optimisation, and virtual
+/// workers unless the calling thread has virtual threads (runtime/virtual_threads.h).
 void check_options_on_ranks(const MeshingOptions& options);
 
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if requested. On one rank

@@ -16,7 +16,6 @@
 #include "distributed/zone.h"
 #include "distributed/zones_of_round.h"
 #include "runtime/parallel_collect.h"
-#include "runtime/processor_seconds.h"
 
 namespace podm {
 
@@ -199,7 +198,7 @@ class Rounds {
       RoundReport report;
       const CubeSet own = cubes_of(ranks_.rank(), zone_of_);
       report.cubes = own.cubes().size();
-      const double start_s = processor_seconds();
+      const double start_s = ranks_.report().computing_s;
       std::vector<CellName> left;
       if (round > 0) {
         // A rank without cells learns its zone, too: it is the zone's writer from now on.
@@ -211,13 +210,13 @@ class Rounds {
       drop_sound(entries, zone);
       share_limit(entries.size());
       report.entries = entries.size();
-      report.update_s = processor_seconds() - start_s;
+      report.update_s = ranks_.report().computing_s - start_s;
       spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
       if (round == 0 && leaves_) entries = refine_leaves(zone, entries, report);
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
-      report.refine_s = processor_seconds() - start_s - report.update_s;
+      report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(round == 0 ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
         if (zone_of_[cube] != kNoRank) exchange_.note_writer(cube, zone_of_[cube]);

@@ -33,6 +33,7 @@ struct RoundReport {
   std::uint64_t cubes = 0;      ///< cubes of its zone
   Update update;                ///< update before it
   double update_s = 0, refine_s = 0;
+  /// Seconds of computing, as Communication counts them: processor seconds of all threads over MPI.
 };
 
 struct DistributedRefinement {

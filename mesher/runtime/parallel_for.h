@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/virtual_threads.h"
+
 namespace podm {
 
 /// Returns the requested number of threads, or the number of all cores if `asked` is 0.
@@ -15,9 +17,11 @@ inline std::size_t num_threads(int asked) {
 }
 
 /// Calls work(i, thread) once for each i < count, on `threads` threads numbered from 0, which is the
-/// caller's. A free thread takes the next i. `work` must not throw.
+/// caller's. A free thread takes the next i. `work` must not throw. The threads of a rank in virtual time are
+/// virtual.
 template <class Work>
 void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
+  if (VirtualThreads* const here = VirtualThreads::current()) return here->loop(count, threads, work);
   std::atomic<std::size_t> next{0};
   const auto run = [&](std::size_t thread) {
     for (std::size_t i = next++; i < count; i = next++) work(i, thread);

@@ -268,6 +268,19 @@ class InProcess(OnRanks):
         process = start_podm("mesh", *ENDLESS, "-o", self.out, "--record", self.runs, "--in-process", 3,
                              program=MPI_PROGRAM, env=ENVIRONMENT)
         self.addCleanup(process.kill)
+    @slow
+    def test_virtual_threads_of_ranks_share_their_work(self):
+        log = self.folder / "run.log"
+        for threads in 1, 8:
+            self.assert_exit(self.mesh_in_process(2, "--radius", 2, "--executor", "virtual", "--threads", threads, "--log",
+                                                  log, "--verify"), 0)
+            self.assert_exit(run_podm("replay", IMAGE, f"{log}.0", f"{log}.1"), 0)
+        alone, together = (json.loads(line) for line in self.runs.read_text().splitlines())
+        seconds = [max(rank["virtual"]["computing_s"] for rank in record["ranks"]["by_rank"])
+                   for record in (alone, together)]
+        self.assertLess(seconds[1], 0.6 * seconds[0])
+        self.assertEqual({rank["threads"] for rank in together["ranks"]["by_rank"]}, {8})
+
         self.assertTrue(any(line.startswith("refine") for line in process.stderr))
         time.sleep(2)  # rank 0 may be the last to begin
         process.send_signal(signal.SIGINT)
@@ -390,6 +403,10 @@ class Refusals(OnRanks):
         mesh = ["mesh", one, "-o", self.out]
         for arguments, word in ((["mesh", other, "-o", self.out], "image"),
                                 ([*mesh, "--radius", 3], "radius"),
+    def test_ranks_of_mpi_have_no_virtual_time(self):
+        self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--executor",
+                                "virtual"], "virtual time", "--in-process")
+
                                 ([*mesh, "--algorithm", "pdr"], "algorithm"),
                                 ([*mesh, "--leaf-size", 3], "leaf size"),
                                 (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),

@@ -129,6 +129,12 @@ void VirtualTime::pass_unlocked(WorkerId self) {
   states_[self].overhead.rollback_s += now_s_ - since_s;
 }
 
+double VirtualTime::busy_s() const {
+  double busy_s = spending_.work_s + spending_.between_s;
+  for (const WorkerState& state : states_) busy_s += state.overhead.rollback_s;
+  return busy_s;
+}
+
 double VirtualTime::unlocked_seconds() const {
   return (cost_ == VirtualCost::kUnit ? kUnit / 10 : seconds_before_locks(costs_)) / speed_;
 }

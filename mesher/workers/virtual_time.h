@@ -92,6 +92,8 @@ class VirtualTime {
     return states_[worker.id()].overhead;
   }
   const VirtualSpending& spending() const { return spending_; }
+  /// Virtual seconds in which the processors of all workers were busy.
+  double busy_s() const;
   /// The costs that accounted operations spend.
   const TimeCosts& costs() const { return costs_; }
 

@@ -171,6 +171,8 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nnetwork = '2,12.5'\n", "some.toml:10:11:", "in-process"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2'\n", "some.toml:10:11:", "12.5"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2,0'\n", "some.toml:10:11:", "12.5"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nexecutor = 'virtual'\n",
+       "some.toml:10:12:", "in-process"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nreplay = true\n", "some.toml:10:10:", "exclude"},
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nmesher = 'cgal'\n", "some.toml:8:9:", "podm only"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},

@@ -185,6 +185,7 @@ int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
   };
   run_ranks({.num_ranks = command.ranks_in_process,
              .one_at_a_time = true,
+             .has_virtual_threads = command.meshing.team.executor == Executor::kVirtual,
              .seed = command.meshing.team.seed,
              .latency_s = kSecondsPerUs * command.network.latency_us,
              .bytes_per_s = kBytesPerGigabyte * command.network.gigabytes_per_s},

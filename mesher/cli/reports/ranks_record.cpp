@@ -11,6 +11,7 @@
 #include "cli/reports/json_text.h"
 #include "distributed/messages.h"
 #include "podm/mesh_io.h"
+#include "runtime/virtual_threads.h"
 
 namespace podm {
 
@@ -24,12 +25,17 @@ using Json = nlohmann::ordered_json;
 // The cost of a rank and its process. A process with virtual clocks has other ranks, too.
 struct Spent {
   std::uint64_t threads, peak_rss_bytes;
-  bool is_virtual;
+  bool is_virtual, is_complete;  // complete: virtual time includes all threads
   RankReport report;
 };
 
 Spent spent_by(const Communication& ranks, int threads) {
-  return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), ranks.is_virtual(), ranks.report()};
+  const bool is_complete = threads == 1 || VirtualThreads::current() != nullptr;
+  return {.threads = static_cast<std::uint64_t>(threads),
+          .peak_rss_bytes = peak_resident_bytes(),
+          .is_virtual = ranks.is_virtual(),
+          .is_complete = is_complete,
+          .report = ranks.report()};
 }
 
 // Returns one round on all ranks: sums, and the seconds of the slowest rank.
@@ -92,9 +98,7 @@ Json rounds_of(const std::vector<PartOfRank>& parts) {
 
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
 
-// Returns true if virtual times are complete: the clock measures a rank's own thread and no threads that it
-// starts.
-bool has_virtual_time(const Spent& spent) { return spent.is_virtual && spent.threads == 1; }
+bool has_virtual_time(const Spent& spent) { return spent.is_virtual && spent.is_complete; }
 
 Json virtual_time_of(const Spent& spent) {
   if (!has_virtual_time(spent)) return nullptr;
@@ -151,7 +155,7 @@ std::string memory_text(const std::vector<Spent>& spent) {
 
 std::string virtual_time_text(const std::vector<Spent>& spent) {
   if (!has_virtual_time(spent[0]))
-    return "no virtual time: the clock of a rank does not include its other threads";
+    return "no virtual time: the clock of a rank does not include its other threads (see --executor)";
   double computing_s = 0, waiting_s = 0;
   std::uint64_t bytes = 0;
   for (const Spent& one : spent) {

@@ -183,7 +183,7 @@ std::string text_sha256(std::string_view text) {
 
 // Times of a virtual executor are simulated, so they are stored apart from measured times.
 Json virtual_of(const MeshRun& run) {
-  if (run.options.team.executor != Executor::kVirtual) return nullptr;
+  if (run.report.virtual_model.empty()) return nullptr;
   double refine_s = 0;
   const std::map<std::string, double>& phases_s = run.report.virtual_phases_s;
   for (const char* phase : {"initial", "refine", "closing"})

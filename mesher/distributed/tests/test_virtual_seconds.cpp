@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "distributed/in_process_ranks.h"
+#include "runtime/parallel_for.h"
 #include "runtime/processor_seconds.h"
 
 namespace podm {
@@ -102,6 +103,26 @@ TEST(VirtualSeconds, TheClockIsTheRanksProcessorTime) {
   EXPECT_LT(reports[0].computing_s, busy_s / 2);
   EXPECT_LT(reports[2].computing_s, busy_s / 2);
   EXPECT_GE(reports[2].waiting_s, busy_s / 2);
+}
+
+// Two ranks compute the same. One has four virtual threads and takes a quarter of the other's time.
+TEST(VirtualSeconds, VirtualThreadsShareTheWorkOfLoops) {
+  const double round_s = 0.02;
+  const auto rounds_of = [&](std::size_t threads) {
+    return run_ranks({.num_ranks = 2, .one_at_a_time = true, .has_virtual_threads = true},
+                     [&](Communication& ranks) {
+                       parallel_for(8, threads, [&](std::size_t, std::size_t) {
+                         const double start_s = processor_seconds();
+                         while (processor_seconds() - start_s < round_s) {
+                         }
+                       });
+                       ranks.barrier();
+                     });
+  };
+  const double alone_s = rounds_of(1)[1].computing_s, together_s = rounds_of(4)[1].computing_s;
+  EXPECT_GE(alone_s, 8 * round_s);
+  EXPECT_GE(together_s, 2 * round_s);
+  EXPECT_LT(together_s, alone_s / 2);
 }
 
 }  // namespace
