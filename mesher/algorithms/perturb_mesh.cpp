@@ -3,17 +3,11 @@
 #include <new>
 #include <numeric>
 
-#include "algorithms/podm_loop.h"
+#include "algorithms/perturb_loop.h"
 
 namespace podm {
 
 namespace {
-
-constexpr const char* kPhase = "perturb";
-
-// The few cells that the first round leaves justify more points, and more distant ones.
-constexpr std::array kRounds{MoveEffort{12, 0.25}, MoveEffort{36, 0.4}, MoveEffort{36, 0.4},
-                             MoveEffort{36, 0.4}, MoveEffort{36, 0.4}};
 
 template <class Locks, class Time>
 class Phase {
@@ -22,10 +16,8 @@ class Phase {
       : construction_(construction),
         mesh_(construction.mesh()),
         time_(time),
-        workers_(construction.make_workers<Locks>(parameters, construction.num_workers(), kPhase)) {
-    const std::uint64_t seed = construction.team().coordination.seed;
-    for (const auto& worker : workers_)
-      worker->begin_perturbation(*construction.problem().dihedral_bounds, seed + worker->id());
+        workers_(construction.make_workers<Locks>(parameters, construction.num_workers(), kPerturb)) {
+    begin_perturbation(construction, workers_);
   }
   ~Phase() {
     construction_.stop().observe_by([](std::uint64_t) {});  // the workers that it reads are destroyed
@@ -38,10 +30,7 @@ class Phase {
     report.max_dihedral_deg = bounds.largest_deg();
     report.before = list_poor(true);
     observe(report.before.number());
-    for (const MoveEffort& effort : kRounds) {
-      if (!try_listed(effort)) break;
-      if (&effort != &kRounds.back()) list_kept();
-    }
+    perturb_listed(construction_, workers_, time_);
     count_unmoved(report);
     if (time_.is_over()) {  // the cells in `unmoved` have been tried
       report.after = list_poor(false);
@@ -53,7 +42,6 @@ class Phase {
   }
 
  private:
-  using Kept = typename Worker<Locks>::Kept;
   static constexpr CellId kLookahead = 8;
 
   // Counts the poor cells, and lists them if `gives`. Each worker has a part of the store, which does not
@@ -69,7 +57,7 @@ class Phase {
         if (c + kLookahead < end) mesh_.prefetch_vertices(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || !worker.perturbation().is_poor(c)) continue;
         PerturbationReport::Cells& cells = found[self];
-        ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);
+        ++(has_free_vertex(mesh_, c) ? cells.with_free_vertex : cells.without);
         if (gives) worker.give(c);
       }
       return end - begin;
@@ -87,28 +75,6 @@ class Phase {
     return sum;
   }
 
-  // Returns false if the run is over or there was nothing to try.
-  bool try_listed(const MoveEffort& effort) {
-    bool has_work = false;
-    for (const auto& worker : workers_) {
-      worker->perturbation().set_effort(effort);
-      has_work = has_work || worker->has_work();
-    }
-    if (!has_work) return false;
-    Coordination group(coordination_of_first(construction_.team(), construction_.num_workers()),
-                       [&](WorkerId worker) { time_.resume(worker); });
-    time_.run([&](WorkerId self) {
-      if (refine(*workers_[self], group, time_) && self == 0) group.dismiss();
-    });
-    return !time_.is_over();
-  }
-
-  void list_kept() {
-    for (const auto& worker : workers_)
-      for (const Kept& kept : worker->take_kept())
-        if (mesh_.stamp(kept.entry.cell) == kept.entry.stamp) worker->give(kept.entry.cell);
-  }
-
   // Reports the cells that the last round kept. A cell that became poor was listed, and one that was tried
   // without success was kept.
   void count_unmoved(PerturbationReport& report) {
@@ -116,8 +82,7 @@ class Phase {
       for (const auto& [entry, why] : worker->take_kept()) {
         if (mesh_.stamp(entry.cell) != entry.stamp) continue;
         ++report.unmoved[static_cast<std::size_t>(why)];
-        const bool has_free = worker->perturbation().has_free_vertex(entry.cell);
-        ++(has_free ? report.after.with_free_vertex : report.after.without);
+        ++(has_free_vertex(mesh_, entry.cell) ? report.after.with_free_vertex : report.after.without);
       }
     }
   }
@@ -141,7 +106,7 @@ class Phase {
 
 void perturb_mesh(Construction& construction, const Parameters& parameters) {
   if (!construction.problem().dihedral_bounds || construction.stop().is_over()) return;
-  construction.timed(kPhase, [&] {
+  construction.timed(kPerturb, [&] {
     // Memory may run out for the lists between rounds, too, not only for workers.
     const auto run = [&](auto& time) {
       using Time = std::remove_reference_t<decltype(time)>;
@@ -152,12 +117,12 @@ void perturb_mesh(Construction& construction, const Parameters& parameters) {
       }
     };
     try {
-      construction.in_time(kPhase, construction.num_workers(), run, kPhase);
+      construction.in_time(kPerturb, construction.num_workers(), run, kPerturb);
     } catch (const std::bad_alloc&) {
       construction.stop().end(StopReason::kMemoryLimit);
     }
   });
-  construction.sample_pages(kPhase);
+  construction.sample_pages(kPerturb);
 }
 
 }  // namespace podm

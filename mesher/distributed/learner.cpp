@@ -73,6 +73,8 @@ class Learner::OnThread {
       note(change, logged_kind);
       const std::vector<CellId>& created = operation_.created();
       if (lists_made_) made_.insert(made_.end(), created.begin(), created.end());
+      // No rule examines these cells here. Each may rely on vertices of other cells.
+      for (const CellId c : created) mesh_.set_relies_on_others(c, true);
       near_ = created.front();
     }
     operation_.release();

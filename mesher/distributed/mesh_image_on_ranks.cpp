@@ -93,6 +93,7 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"sizes near interfaces", near},
           {"growth of sizes", fmt::format("{}", sizes.grade)},
           {"smoothing", fmt::format("{} mm", options.smoothing_mm)},
+          {"least dihedral angle", fmt::format("{} degrees", options.min_dihedral_deg)},
           {"space", to_string(options.space)},
           {"algorithm", to_string(options.algorithm)},
           {"leaf size", fmt::format("{} mm", options.leaves.size_mm)},
@@ -138,9 +139,11 @@ class RunOnRank {
                     .phases_s = own.phases_s,
                     .spent = spending_.by_phase(),
                     .rounds = refined_->rounds,
+                    .perturbing_rounds = refined_->perturbing_rounds,
                     .seeds = refined_->seeds,
                     .last_update = refined_->last_update};
     std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
+    phases_.promise_dihedral_bounds(result.piece.mesh, result.report);
     result.report.guarantees.missing_labels =
         missing_labels(image_, result.report.cells_of_label, phases_.loop_threads());
     return result;
@@ -224,6 +227,7 @@ class RunOnRank {
         .grid = grid,
         .rank_of_cube = std::vector<int>(grid.num_cubes()),
         .rounds = {},
+        .perturbing_rounds = {},
         .seeds = 0,
         .last_update = {}});
     spending.end("refine");

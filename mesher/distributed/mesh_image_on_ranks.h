@@ -18,11 +18,11 @@ struct PartOfRank {
   std::uint64_t cells = 0, boundary_facets = 0;  ///< numbers in its piece
   std::uint64_t store_cells = 0;                 ///< number in its store at the end
   std::map<std::string, double> phases_s;
-  SpentByPhase spent;               ///< by the phases of rounds.h, and others: "transform", "calibrate" if
-                                    ///< there is a target, "extract" and "measure"
-  std::vector<RoundReport> rounds;  ///< empty on one rank
-  std::uint64_t seeds = 0;          ///< vertices that it inserted before round 0
-  Update last_update;               ///< the update that completed its block
+  SpentByPhase spent;  ///< by the phases of rounds.h, and others: "transform", "calibrate" if
+                       ///< there is a target, "extract" and "measure"
+  std::vector<RoundReport> rounds, perturbing_rounds;  ///< of R1 to R6, and of R7; empty on one rank
+  std::uint64_t seeds = 0;                             ///< vertices that it inserted before round 0
+  Update last_update;                                  ///< the update that completed its block
 };
 
 struct MeshingOnRanks {

@@ -78,7 +78,9 @@ Bytes message_of(const MeshingReport& own, const PartOfRank& part) {
   append(message, values_of(part.phases_s));
   append(message, values_of(part.spent));
   append(message, part.rounds);
+  append(message, part.perturbing_rounds);
   append_one(message, part.last_update);
+  append_one(message, own.perturbation.value_or(PerturbationReport()));
   append_one(message, own.stop_reason);
   append_one(message, own.guarantees);
   append_one(message, own.quality);
@@ -115,6 +117,15 @@ void add(const Guarantees& more, Guarantees& sum) {
     sum.*member += more.*member;
 }
 
+void add(const PerturbationReport& more, PerturbationReport& sum) {
+  for (const auto cells : {&PerturbationReport::before, &PerturbationReport::after}) {
+    (sum.*cells).with_free_vertex += (more.*cells).with_free_vertex;
+    (sum.*cells).without += (more.*cells).without;
+  }
+  for (std::size_t why = 0; why < sum.unmoved.size(); ++why) sum.unmoved[why] += more.unmoved[why];
+  sum.not_reached += more.not_reached;
+}
+
 template <class Key, class Value>
 void add(const std::vector<Value>& more, std::map<Key, Value>& sums) {
   if (more.size() != sums.size()) throw InternalError("ranks report different labels or phases");
@@ -134,6 +145,8 @@ MeshingReport none_like(MeshingReport own) {
   own.counters = {};
   own.workers.clear();
   own.store_cells = 0;
+  if (auto& sum = own.perturbation)
+    sum = PerturbationReport{sum->min_dihedral_deg, sum->max_dihedral_deg, {}, {}, {}, 0};
   clear(own.cells_of_label);
   clear(own.volume_of_label_mm3);
   clear(own.phases_s);
@@ -151,6 +164,7 @@ PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, Meshin
                   .phases_s = like.phases_s,
                   .spent = like.spent,
                   .rounds = {},
+                  .perturbing_rounds = {},
                   .seeds = numbers[3],
                   .last_update = {}};
   clear(part.phases_s);
@@ -158,8 +172,11 @@ PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, Meshin
   clear(part.spent);
   add(reader.read<PhaseSeconds>(), part.spent);
   part.rounds = reader.read<RoundReport>();
+  part.perturbing_rounds = reader.read<RoundReport>();
   part.last_update = read_one<Update>(reader);
   report.store_cells += part.store_cells;
+  const auto perturbation = read_one<PerturbationReport>(reader);
+  if (report.perturbation) add(perturbation, *report.perturbation);
   const auto reason = read_one<StopReason>(reader);
   if (report.stop_reason == StopReason::kComplete) report.stop_reason = reason;
   add(read_one<Guarantees>(reader), report.guarantees);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "algorithms/leaf_size.h"
-#include "algorithms/podm_loop.h"
+#include "algorithms/perturb_loop.h"
 #include "distributed/completion.h"
 #include "distributed/learner.h"
 #include "distributed/leaves_of_zone.h"
@@ -15,6 +16,7 @@
 #include "distributed/vertex_exchange.h"
 #include "distributed/zone.h"
 #include "distributed/zones_of_round.h"
+#include "refine/dihedral_quality.h"
 #include "runtime/parallel_collect.h"
 
 namespace podm {
@@ -61,6 +63,15 @@ struct Waiting {
   std::uint32_t cells;
   Ball largest;
 };
+
+// A cell that R7 could not change.
+struct KeptName {
+  CellName cell;
+  Unmoved why;
+};
+
+// The tasks that ranks do in rounds: R1 to R6, and R7.
+enum class Task { kRefine, kPerturb };
 
 Ball ball_of(const CellName& name, double extent) {
   const auto& v = name.vertices;
@@ -110,20 +121,24 @@ class Rounds {
       construction_.timed(phase, [] {});  // every rank has these phases
     for (const char* phase : {"octree", "closing"})
       if (leaves_) construction_.timed(phase, [] {});
+    if (problem_.dihedral_bounds) construction_.timed(kPerturb, [] {});
     construction_.timed("initial", [&] {
       divide_space();
       seed();
     });
     spending_.end("initial");
-    refine_in_rounds();
+    work_in_rounds(Task::kRefine, rounds_);
+    if (problem_.dihedral_bounds && !is_over_) perturb();
     const Update last_update =
         complete(construction_.mesh(), exchange_, block(), kKnownRings, learner_.threads(), ranks_);
     exchange_.check();
+    if (perturbation_) report_poor_cells();
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = blocks_->ranks(),
             .rounds = std::move(rounds_),
+            .perturbing_rounds = std::move(perturbing_rounds_),
             .seeds = num_seeds_,
             .last_update = last_update,
             .spent = spending_.by_phase()};
@@ -186,43 +201,52 @@ class Rounds {
     return blocks_->of(grid_.cube_at(mesh.point(least))) == ranks_.rank();
   }
 
-  // Refines until no cell waits, or the run is over.
-  void refine_in_rounds() {
+  // Works until no cell waits, or the run is over.
+  void work_in_rounds(Task task, std::vector<RoundReport>& rounds) {
     zone_of_ = blocks_->ranks();
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
-    std::vector<CellName> here;  // deferred cells to be refined here
-    Construction::Entries first = own_cells();
-    count_cells_of_all(first.size());
+    reach_over_radius_ = 1;
+    std::vector<CellName> here;  // deferred cells that this rank's zone has
     do {
-      const auto round = static_cast<int>(rounds_.size());
+      const auto round = static_cast<int>(rounds.size());
+      const bool is_first = round == 0, knows_seeds = is_first && task == Task::kRefine;
       RoundReport report;
       const CubeSet own = cubes_of(ranks_.rank(), zone_of_);
       report.cubes = own.cubes().size();
       const double start_s = ranks_.report().computing_s;
       std::vector<CellName> left;
-      if (round > 0) {
+      if (!knows_seeds) {
         // A rank without cells learns its zone, too: it is the zone's writer from now on.
         report.update = exchange_.update(wanted(own, here));
         exchange_.check();
       }
-      const Zone zone(own, exchange_.known(), kKnownRings, round == 0 ? kRoomInBlocks : 0);
-      Construction::Entries entries = round == 0 ? std::move(first) : find(here, zone, left);
-      drop_sound(entries, zone);
+      const Zone zone(own, exchange_.known(), kKnownRings, knows_seeds ? kRoomInBlocks : 0);
+      Construction::Entries entries = is_first ? first_entries(task) : find(here, zone, left);
+      if (knows_seeds) count_cells_of_all(entries.size());
+      if (task == Task::kRefine) drop_sound(entries, zone);
       share_limit(entries.size());
       report.entries = entries.size();
       report.update_s = ranks_.report().computing_s - start_s;
       spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
-      if (round == 0 && leaves_) entries = refine_leaves(zone, entries, report);
-      for (const CellId c : refine_in(zone, entries, report))
+      if (knows_seeds && leaves_) entries = refine_leaves(zone, entries, report);
+      for (const CellId c : work_in(task, zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
-      spending_.end(round == 0 ? "refine" : "later");
+      spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
         if (zone_of_[cube] != kNoRank) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
-      rounds_.push_back(report);
-    } while (rounds_.back().deferred > 0 && !is_over_);
+      rounds.push_back(report);
+    } while (rounds.back().deferred > 0 && !is_over_);
+  }
+
+  // The block of this rank must be known.
+  Construction::Entries first_entries(Task task) {
+    if (task == Task::kRefine) return own_cells();
+    Construction::Entries poor = own_poor_cells();
+    perturbation_->before = count(poor);
+    return poor;
   }
 
   void count_cells_of_all(std::size_t own) {
@@ -257,6 +281,54 @@ class Rounds {
           for (auto c = static_cast<CellId>(begin); c < end; ++c)
             if (mesh.cell(c).is_alive() && is_own(mesh.cell(c))) own.push_back({c, mesh.stamp(c)});
         });
+  }
+
+  // Returns this rank's cells with dihedral angles out of bounds.
+  Construction::Entries own_poor_cells() {
+    Mesh& mesh = construction_.mesh();
+    const Rules rules(mesh, problem_.isosurface, levels_.final);
+    Construction::Entries own = own_cells();
+    return parallel_collect<Construction::Entries::value_type>(
+        own.size(), learner_.threads(), [&](std::size_t begin, std::size_t end, auto& poor) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (is_poor(mesh, rules, own[i].cell, *problem_.dihedral_bounds)) poor.push_back(own[i]);
+        });
+  }
+
+  PerturbationReport::Cells count(const Construction::Entries& poor) const {
+    PerturbationReport::Cells cells;
+    for (const auto& entry : poor)
+      ++(has_free_vertex(construction_.mesh(), entry.cell) ? cells.with_free_vertex : cells.without);
+    return cells;
+  }
+
+  // Applies R7, after R1 to R6 on all ranks.
+  void perturb() {
+    perturbation_.emplace();
+    perturbation_->min_dihedral_deg = problem_.dihedral_bounds->least_deg();
+    perturbation_->max_dihedral_deg = problem_.dihedral_bounds->largest_deg();
+    work_in_rounds(Task::kPerturb, perturbing_rounds_);
+  }
+
+  // Counts this rank's cells that are still poor. The rank that tried a cell last sends the reason to the
+  // cell's rank.
+  void report_poor_cells() {
+    PerturbationReport& report = *perturbation_;
+    std::vector<std::vector<KeptName>> kept(static_cast<std::size_t>(ranks_.size()));
+    for (const KeptName& name : kept_) {
+      const int rank = blocks_->of(grid_.cube_at(name.cell.vertices[0]));
+      kept.at(static_cast<std::size_t>(rank)).push_back(name);
+    }
+    const Construction::Entries poor = own_poor_cells();
+    report.after = count(poor);
+    std::set<CellId> unexplained;
+    for (const auto& entry : poor) unexplained.insert(entry.cell);
+    for (const KeptName& name : exchanged(kept)) {
+      const auto cell = learner_.find_cell(name.cell.vertices);
+      if (cell && unexplained.erase(*cell) > 0) ++report.unmoved[static_cast<std::size_t>(name.why)];
+    }
+    report.not_reached = unexplained.size();
+    construction_.report(report);
   }
 
   // Returns the cubes whose vertices must be known in a zone with these deferred cells.
@@ -322,8 +394,10 @@ class Rounds {
              });
     };
     const auto is_dropped = [&](const auto& entry) {
-      return !zone.may_read(mesh, mesh.cell(entry.cell)) && is_known(entry.cell) &&
-             rules.is_sound(entry.cell);
+      if (zone.may_read(mesh, mesh.cell(entry.cell)) || !is_known(entry.cell) || !rules.is_sound(entry.cell))
+        return false;
+      mesh.set_relies_on_others(entry.cell, true);  // it may
+      return true;
     };
     entries = parallel_collect<Construction::Entries::value_type>(
         entries.size(), learner_.threads(), [&](std::size_t begin, std::size_t end, auto& kept) {
@@ -340,9 +414,10 @@ class Rounds {
     return std::move(refined.left);
   }
 
-  std::vector<CellId> refine_in(const Zone& zone, const Construction::Entries& entries, RoundReport& report) {
-    if (construction_.num_workers() > 1) return refine_with<VertexLocks>(zone, entries, report);
-    return refine_with<NoLocks>(zone, entries, report);
+  std::vector<CellId> work_in(Task task, const Zone& zone, const Construction::Entries& entries,
+                              RoundReport& report) {
+    if (construction_.num_workers() > 1) return work_with<VertexLocks>(task, zone, entries, report);
+    return work_with<NoLocks>(task, zone, entries, report);
   }
 
   // Gives each worker an equal share. Most cells that follow each other in the list are near each other:
@@ -358,27 +433,56 @@ class Rounds {
 
   // Returns the cells that need vertices outside the zone.
   template <class Inner>
-  std::vector<CellId> refine_with(const Zone& zone, const Construction::Entries& entries,
-                                  RoundReport& report) {
+  std::vector<CellId> work_with(Task task, const Zone& zone, const Construction::Entries& entries,
+                                RoundReport& report) {
+    if (entries.empty() || stop_.is_over()) return {};
+    const char* const phase = task == Task::kPerturb ? kPerturb : leaves_ ? "closing" : "refine";
     std::vector<CellId> deferred;
-    if (entries.empty() || stop_.is_over()) return deferred;
-    const Mesh& mesh = construction_.mesh();
-    const char* const phase = leaves_ ? "closing" : "refine";
     construction_.timed(phase, [&] {
       const auto workers =
           construction_.make_workers<ZoneLocks<Inner>>(levels_.final, construction_.num_workers());
       for (const auto& worker : workers) worker->locks().confine(zone);
+      if (task == Task::kPerturb) begin_perturbation(construction_, workers);
       construction_.in_time(phase, construction_.num_workers(), [&](auto& time) {
         share_out(entries, workers);
-        refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), {}, time);
+        if (task == Task::kPerturb) {
+          perturb_listed(construction_, workers, time);
+          construction_.account(workers, time);
+        } else {
+          refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), {}, time);
+        }
       });
       for (const auto& worker : workers) {
-        for (const std::uint64_t count : worker->counters().insertions_by_rule) report.insertions += count;
-        for (const auto& entry : worker->take_deferred())
-          if (mesh.stamp(entry.cell) == entry.stamp) deferred.push_back(entry.cell);
+        report.insertions += changes_of(worker->counters());
+        take_deferred(*worker, deferred);
+        take_kept(*worker);
       }
     });
     return deferred;
+  }
+
+  static std::uint64_t changes_of(const Counters& counters) {
+    std::uint64_t changes = counters.moves;
+    for (const std::uint64_t count : counters.insertions_by_rule) changes += count;
+    return changes;
+  }
+
+  // A deferred cell may rely on vertices of other cells. No rule has examined it.
+  template <class Locks>
+  void take_deferred(Worker<Locks>& worker, std::vector<CellId>& deferred) {
+    Mesh& mesh = construction_.mesh();
+    for (const auto& entry : worker.take_deferred()) {
+      if (mesh.stamp(entry.cell) != entry.stamp) continue;
+      mesh.set_relies_on_others(entry.cell, true);
+      deferred.push_back(entry.cell);
+    }
+  }
+
+  template <class Locks>
+  void take_kept(Worker<Locks>& worker) {
+    const Mesh& mesh = construction_.mesh();
+    for (const auto& [entry, why] : worker.take_kept())
+      if (mesh.stamp(entry.cell) == entry.stamp) kept_.push_back({name_of(mesh, entry.cell), why});
   }
 
   // Informs all ranks where cells wait, divides space around these cells, and returns the cells of this
@@ -425,10 +529,12 @@ class Rounds {
 
   Ball ball_of(const CellName& name) const { return podm::ball_of(name, construction_.mesh().extent()); }
 
-  std::vector<CellName> exchanged(const std::vector<std::vector<CellName>>& names) {
-    std::vector<CellName> here;
-    for (const Bytes& received : ranks_.all_to_all(messages_of(names))) {
-      const auto more = values_of<CellName>(received);
+  // Returns what all ranks have for this one.
+  template <class Value>
+  std::vector<Value> exchanged(const std::vector<std::vector<Value>>& values) {
+    std::vector<Value> here;
+    for (const Bytes& received : ranks_.all_to_all(messages_of(values))) {
+      const auto more = values_of<Value>(received);
       here.insert(here.end(), more.begin(), more.end());
     }
     return here;
@@ -451,7 +557,9 @@ class Rounds {
   std::vector<int> zone_of_;      // by cube: the rank of the cube's zone, or kNoRank
   std::vector<std::uint32_t> num_waiting_;  // by cube: deferred cells on all ranks before the round
   std::vector<std::uint64_t> load_;         // by rank: deferred cells assigned to it
-  std::vector<RoundReport> rounds_;
+  std::vector<RoundReport> rounds_, perturbing_rounds_;
+  std::optional<PerturbationReport> perturbation_;  // of R7, if it is applied
+  std::vector<KeptName> kept_;                      // cells that R7 could not change on this rank
   std::uint64_t num_seeds_ = 0;
   std::int64_t cells_of_all_ = 0;    // cells of the whole mesh before the round
   std::int64_t cells_reported_ = 0;  // number of this rank's added cells that the other ranks know

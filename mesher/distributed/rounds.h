@@ -11,7 +11,8 @@
 //   4  In rounds 1 to 3 the zones are shifted blocks. In later rounds zones surround the deferred cells that
 //      are left (zones_of_round.h). They become wider from round to round. When one zone fills space its rank
 //      knows all vertices and defers nothing; therefore the rounds end.
-//   5  At the end each rank learns what other ranks changed in its block and around it.
+//   5  R7 moves vertices in rounds with the same zones, if it is requested (refine/perturbation.h).
+//   6  At the end each rank learns what other ranks changed in its block and around it.
 //
 // After each of these exchanges the ranks compare what they have where they overlap (overlap.h).
 #pragma once
@@ -32,19 +33,19 @@ struct RoundReport {
   std::uint64_t deferred = 0;   ///< cells, on all ranks
   std::uint64_t cubes = 0;      ///< cubes of its zone
   Update update;                ///< update before it
-  double update_s = 0, refine_s = 0;
   /// Seconds of computing, as Communication counts them: processor seconds of all threads over MPI.
+  double update_s = 0, refine_s = 0;
 };
 
 struct DistributedRefinement {
   Refinement refinement;  ///< the mesh is correct in this rank's block and around it
   CubeGrid grid;
-  std::vector<int> rank_of_cube;  ///< by cube: the rank of its block
-  std::vector<RoundReport> rounds;
-  std::uint64_t seeds = 0;  ///< vertices that this rank inserted before round 0
+  std::vector<int> rank_of_cube;                       ///< by cube: the rank of its block
+  std::vector<RoundReport> rounds, perturbing_rounds;  ///< those of R1 to R6, and those of R7
+  std::uint64_t seeds = 0;                             ///< vertices that this rank inserted before round 0
   Update last_update;
   /// This rank's time per phase: "initial", blocks and seeds; "refine", round 0; "later", refining in later
-  /// rounds; "exchange", everything else.
+  /// rounds; "perturb", R7 in all rounds; "exchange", everything else.
   SpentByPhase spent = {};
 };
 

@@ -35,6 +35,10 @@
 // vertices, or of a neighbor of such a cell. The second move replaces all cells around the vertex, so it
 // holds all their vertices. A lock has one holder, so this cannot be. Therefore the moves of any run are
 // those of some serial run in which each move is as above, and they end.
+//
+// Ranks apply R7 in zones (distributed/zone.h), for the same reason. A move holds the vertices in its zone,
+// and a cell that it reads has a vertex there. A neighbour of that cell has one, too. A move in another zone
+// replaces only cells without such a vertex.
 #pragma once
 
 #include <algorithm>
@@ -72,13 +76,7 @@ class Perturbation {
         random_(seed) {}
 
   /// True if the cell is inside the object and has an angle out of bounds.
-  bool is_poor(CellId c) const {
-    return dihedral_quality(mesh_, c, bounds_) < 1 && rules_.label_of(c) != kBackground;
-  }
-  bool has_free_vertex(CellId c) const {
-    const auto& vertices = mesh_.cell(c).vertices;
-    return std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) { return is_free(v); });
-  }
+  bool is_poor(CellId c) const { return podm::is_poor(mesh_, rules_, c, bounds_); }
   /// Sets the effort for the next cells.
   void set_effort(const MoveEffort& effort) { effort_ = effort; }
   /// Plans a move that improves a poor cell. kDone: the caller is to commit the move to move().point().
@@ -93,7 +91,6 @@ class Perturbation {
     double quality;
   };
 
-  bool is_free(VertexId v) const { return mesh_.vertex(v).kind == VertexKind::kCircumcenter; }
   StepResult plan_of(VertexId v, CellId poor);
   void begin(VertexId v, CellId poor);
   double least_quality_in_region(std::size_t first);

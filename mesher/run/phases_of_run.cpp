@@ -210,13 +210,17 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   report.phases_s["measure"] = seconds_() - start_s;
   mesh.is_optimized = report.optimization.has_value();
   mesh.smoothing_mm = options_.smoothing_mm;
-  if (options_.space != Space::kVoxel) {  // angles differ in voxel space
-    mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
-    return;
-  }
+  promise_dihedral_bounds(mesh, report);
+  if (options_.space != Space::kVoxel) return;
   const double begin_s = seconds_();
   convert_to_voxel_space(mesh, image_, loop_threads_);
   report.phases_s["extract"] += seconds_() - begin_s;
+}
+
+// Angles differ in voxel space.
+void PhasesOfRun::promise_dihedral_bounds(TetMesh& mesh, MeshingReport& report) const {
+  if (options_.space == Space::kVoxel) return;
+  mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
 }
 
 }  // namespace podm

@@ -50,6 +50,8 @@ class PhasesOfRun {
   void extract(const std::function<void(Space)>& extract, MeshingReport& report) const;
   /// Measures the mesh and converts it from mm to the requested space.
   void finish(TetMesh& mesh, MeshingReport& report) const;
+  /// Promises the requested dihedral bounds if the report's quality keeps them. finish() does, too.
+  void promise_dihedral_bounds(TetMesh& mesh, MeshingReport& report) const;
 
  private:
   using Clock = std::chrono::steady_clock;

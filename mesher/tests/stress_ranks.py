@@ -2,8 +2,8 @@
 script.
 
 `random` makes runs of podm-mpi with its ranks in one process. A seed alone determines phantom, ranks, algorithm,
-threads, initial ratio and the cuts of blocks. `images` meshes every image of a folder on several numbers of ranks, in
-one process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
+threads, initial ratio, R7 and the cuts of blocks. `images` meshes every image of a folder on several numbers of ranks,
+in one process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
 $PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
 """
 
@@ -142,8 +142,11 @@ def drawn(seed, samples):
     algorithm = rng.choice([["podm"], ["pdr"], ["pdr-podm", "--nodes", threads, "--cores-per-node", 2]])
     if algorithm[0] == "pdr-podm":
         threads *= 2
+    moves = ["--min-dihedral", round(rng.uniform(4, 15), 1)] if rng.random() < 0.4 else []
+    executor = rng.choice(["threads", "virtual"])
     return OnRanks(sample, f"seed {seed}", [], ["--in-process", ranks, "--seed", seed, "--threads", threads,
-                                                "--initial-ratio", ratio, "--algorithm", *algorithm])
+                                                "--initial-ratio", ratio, "--executor", executor, *moves,
+                                                "--algorithm", *algorithm])
 
 
 def run_random(options):

@@ -160,6 +160,26 @@ class Meshes(OnRanks):
                                           "--record", self.runs), 0)
                 self.assertLess(abs(record["cells"] / self.last_record()["cells"] - 1), 0.03)
 
+    def test_r7_moves_vertices_on_ranks(self):
+        for threads in 1, 2:
+            with self.subTest(threads=threads):
+                log, radius, angle = self.folder / "run.log", 3, 12
+                process = self.mesh_in_process(4, "--radius", radius, "--min-dihedral", angle, "--threads", threads,
+                                               "--oversubscribe", "--verify", "--log", log)
+                self.assert_exit(process, 0)
+                record = self.last_record()
+                self.assertEqual(set(record["verdicts"].values()), {"pass"})
+                self.assert_exit(run_podm("replay", IMAGE, *(self.folder / f"run.log.{i}" for i in range(4))), 0)
+                self.assert_exit(run_podm("mesh", IMAGE, "--radius", radius, "--min-dihedral", angle, "-o",
+                                          self.folder / "alone.vtu", "--record", self.runs), 0)
+                ours, theirs = record["perturbed"], self.last_record()["perturbed"]
+                self.assertEqual(sum(ours["after"].values()), sum(ours["unmoved"].values()))
+                self.assertEqual(ours["unmoved"]["not_reached"], 0)
+                first = record["ranks"]["perturbing_rounds"][0]
+                self.assertEqual(sum(ours["before"].values()), first["entries"])
+                self.assertLess(sum(ours["after"].values()), 1.5 * sum(theirs["after"].values()) + 20)
+                self.assertGreater(len(record["ranks"]["perturbing_rounds"]), 1)
+
     def test_more_ranks_than_there_is_to_do(self):
         image = write_nifti(self.folder / "ball.nii", ball_voxels(12))
         self.assert_exit(self.mesh(6, "--radius", 6, "--delta", 3, image=image), 0)
@@ -249,6 +269,20 @@ class InProcess(OnRanks):
             self.assertGreater(rank["network_s"], rank["messages"] / 3 * 1e-3)
         self.assertEqual(self.last_record()["ranks"]["network"], {"latency_us": 1000, "gigabytes_per_s": 0.001})
 
+    @slow
+    def test_virtual_threads_of_ranks_share_their_work(self):
+        log = self.folder / "run.log"
+        for threads in 1, 8:
+            process = self.mesh_in_process(2, "--radius", 2, "--executor", "virtual", "--threads", threads,
+                                           "--log", log, "--verify")
+            self.assert_exit(process, 0)
+            self.assert_exit(run_podm("replay", IMAGE, f"{log}.0", f"{log}.1"), 0)
+        alone, together = (json.loads(line) for line in self.runs.read_text().splitlines())
+        seconds = [max(rank["virtual"]["computing_s"] for rank in record["ranks"]["by_rank"])
+                   for record in (alone, together)]
+        self.assertLess(seconds[1], 0.6 * seconds[0])
+        self.assertEqual({rank["threads"] for rank in together["ranks"]["by_rank"]}, {8})
+
     def test_what_is_refused(self):
         mesh = ["mesh", IMAGE, "-o", self.out]
         for arguments, words in ((["--network", "2,12.5"], ["--network", "--in-process"]),
@@ -256,7 +290,7 @@ class InProcess(OnRanks):
                                  (["--in-process", 2, "--network", "0,1"], ["--network", "'0,1'"]),
                                  (["--in-process", 0], ["--in-process", "'0'"]),
                                  (["--in-process", 2, "--delta", 1000], ["--delta"]),
-                                 (["--in-process", 2, "--min-dihedral", 8], ["dihedral", "ranks"])):
+                                 (["--in-process", 2, "--optimize"], ["--optimize", "ranks"])):
             with self.subTest(arguments=arguments):
                 process = self.assert_refused([*mesh, *arguments], *words, program=MPI_PROGRAM, env=ENVIRONMENT)
                 self.assertEqual(process.stderr.count("podm-mpi: "), 1)
@@ -268,19 +302,6 @@ class InProcess(OnRanks):
         process = start_podm("mesh", *ENDLESS, "-o", self.out, "--record", self.runs, "--in-process", 3,
                              program=MPI_PROGRAM, env=ENVIRONMENT)
         self.addCleanup(process.kill)
-    @slow
-    def test_virtual_threads_of_ranks_share_their_work(self):
-        log = self.folder / "run.log"
-        for threads in 1, 8:
-            self.assert_exit(self.mesh_in_process(2, "--radius", 2, "--executor", "virtual", "--threads", threads, "--log",
-                                                  log, "--verify"), 0)
-            self.assert_exit(run_podm("replay", IMAGE, f"{log}.0", f"{log}.1"), 0)
-        alone, together = (json.loads(line) for line in self.runs.read_text().splitlines())
-        seconds = [max(rank["virtual"]["computing_s"] for rank in record["ranks"]["by_rank"])
-                   for record in (alone, together)]
-        self.assertLess(seconds[1], 0.6 * seconds[0])
-        self.assertEqual({rank["threads"] for rank in together["ranks"]["by_rank"]}, {8})
-
         self.assertTrue(any(line.startswith("refine") for line in process.stderr))
         time.sleep(2)  # rank 0 may be the last to begin
         process.send_signal(signal.SIGINT)
@@ -376,14 +397,17 @@ class Refusals(OnRanks):
         self.assertEqual(self.files(), before)
 
     def test_what_ranks_do_not_have_yet(self):
-        for option, *words in (["--min-dihedral", 8, "--min-dihedral"], ["--executor", "virtual", "virtual"],
-                               ["--algorithm", "podm-home", "algorithm podm-home"],
+        for option, *words in (["--optimize", "--optimize"], ["--algorithm", "podm-home", "algorithm podm-home"],
                                ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
             with self.subTest(option=option):
                 self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
                                         *values], word, "not available on ranks")
+
+    def test_ranks_of_mpi_have_no_virtual_time(self):
+        self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--executor",
+                                "virtual"], "virtual time", "--in-process")
 
     def test_faults_that_every_rank_sees_are_printed_once(self):
         mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]
@@ -403,10 +427,6 @@ class Refusals(OnRanks):
         mesh = ["mesh", one, "-o", self.out]
         for arguments, word in ((["mesh", other, "-o", self.out], "image"),
                                 ([*mesh, "--radius", 3], "radius"),
-    def test_ranks_of_mpi_have_no_virtual_time(self):
-        self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--executor",
-                                "virtual"], "virtual time", "--in-process")
-
                                 ([*mesh, "--algorithm", "pdr"], "algorithm"),
                                 ([*mesh, "--leaf-size", 3], "leaf size"),
                                 (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),

@@ -38,11 +38,14 @@ Spent spent_by(const Communication& ranks, int threads) {
           .report = ranks.report()};
 }
 
+// The rounds of one task.
+using Rounds = std::vector<RoundReport> PartOfRank::*;
+
 // Returns one round on all ranks: sums, and the seconds of the slowest rank.
-RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
+RoundReport on_all(const std::vector<PartOfRank>& parts, Rounds rounds, std::size_t round) {
   RoundReport all;
   for (const PartOfRank& part : parts) {
-    const RoundReport& one = part.rounds[round];
+    const RoundReport& one = (part.*rounds)[round];
     all.entries += one.entries;
     all.insertions += one.insertions;
     all.in_leaves += one.in_leaves;
@@ -74,26 +77,27 @@ Json update_of(const Update& update) {
 
 // Returns the number of ranks that inserted vertices. If it is 1 in a late round, the deferred cells were one
 // connected part.
-std::size_t ranks_refining(const std::vector<PartOfRank>& parts, std::size_t round) {
-  return static_cast<std::size_t>(std::count_if(
-      parts.begin(), parts.end(), [&](const PartOfRank& part) { return part.rounds[round].insertions > 0; }));
+std::size_t ranks_refining(const std::vector<PartOfRank>& parts, Rounds rounds, std::size_t round) {
+  return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [&](const PartOfRank& part) {
+    return (part.*rounds)[round].insertions > 0;
+  }));
 }
 
-Json rounds_of(const std::vector<PartOfRank>& parts) {
-  Json rounds = Json::array();
-  for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
-    const RoundReport round = on_all(parts, i);
-    rounds.push_back({{"ranks_refining", ranks_refining(parts, i)},
-                      {"entries", round.entries},
-                      {"insertions", round.insertions},
-                      {"in_leaves", round.in_leaves},
-                      {"deferred", round.deferred},
-                      {"cubes", round.cubes},
-                      {"update", update_of(round.update)},
-                      {"update_s", round.update_s},
-                      {"refine_s", round.refine_s}});
+Json rounds_of(const std::vector<PartOfRank>& parts, Rounds rounds) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < (parts[0].*rounds).size(); ++i) {
+    const RoundReport round = on_all(parts, rounds, i);
+    all.push_back({{"ranks_refining", ranks_refining(parts, rounds, i)},
+                   {"entries", round.entries},
+                   {"insertions", round.insertions},
+                   {"in_leaves", round.in_leaves},
+                   {"deferred", round.deferred},
+                   {"cubes", round.cubes},
+                   {"update", update_of(round.update)},
+                   {"update_s", round.update_s},
+                   {"refine_s", round.refine_s}});
   }
-  return rounds;
+  return all;
 }
 
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
@@ -139,7 +143,8 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
           {"network", network_of(run.command)},
           {"initial_ratio", run.options.leaves.initial_ratio},
           {"imbalance", imbalance(parts)},
-          {"rounds", rounds_of(parts)},
+          {"rounds", rounds_of(parts, &PartOfRank::rounds)},
+          {"perturbing_rounds", rounds_of(parts, &PartOfRank::perturbing_rounds)},
           {"last_update", update_of(last)},
           {"by_rank", by_rank}};
 }
@@ -182,7 +187,7 @@ std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spen
   text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>17} {:>17} {:>9}\n", "round", "entries", "insertions",
                       "deferred", "vertices received", "seconds: exchange", "refine");
   for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
-    const RoundReport round = on_all(parts, i);
+    const RoundReport round = on_all(parts, &PartOfRank::rounds, i);
     text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17.2f} {:>9.2f}\n", i, round.entries,
                         round.insertions, round.deferred, round.update.vertices_received, round.update_s,
                         round.refine_s);

@@ -262,7 +262,6 @@ struct MeshingOptions {
                {.unset = "nothing moves",
                 .record = "min_dihedral_deg",
                 .uses = kInAll | kInPlan,
-                .not_on_ranks = "vertices near the faces of blocks would have to move on two ranks at once",
                 .most = kMostMinDihedral,
                 .quantity = "angle in degrees"}),
         nested(&M::optimize),
