@@ -4,34 +4,34 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "distributed/zone.h"
 #include "runtime/parallel_collect.h"
+#include "runtime/parallel_sort.h"
 
 namespace podm {
 
 namespace {
 
-// Returns the given cells and their neighbours, each once.
-std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
-                           const std::vector<CellId>& more) {
-  std::vector<std::uint8_t> is_listed(mesh.cell_bound());
-  std::vector<CellId> cells;
-  const auto list = [&](CellId c) {
-    if (std::exchange(is_listed[c], 1) == 0) cells.push_back(c);
-  };
-  for (const CellId c : some) list(c);
-  for (const CellId c : more) list(c);
-  const std::size_t num_listed = cells.size();
-  for (std::size_t i = 0; i < num_listed; ++i) {
-    if (!mesh.cell(cells[i]).is_alive()) continue;
-    for (const FacetId mirror : mesh.cell(cells[i]).mirrors)
-      if (mirror != kNoFacet) list(cell_of(mirror));
-  }
+// Returns the cells of the two lists and their neighbours, each once.
+std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some, const std::vector<CellId>& more,
+                           std::size_t threads) {
+  auto cells = parallel_collect<CellId>(some.size() + more.size(), threads,
+                                        [&](std::size_t begin, std::size_t end, std::vector<CellId>& found) {
+                                          for (std::size_t i = begin; i < end; ++i) {
+                                            const CellId c =
+                                                i < some.size() ? some[i] : more[i - some.size()];
+                                            if (!mesh.cell(c).is_alive()) continue;
+                                            found.push_back(c);
+                                            for (const FacetId mirror : mesh.cell(c).mirrors)
+                                              if (mirror != kNoFacet) found.push_back(cell_of(mirror));
+                                          }
+                                        });
+  parallel_sort(cells.begin(), cells.end(), threads);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
 
@@ -63,17 +63,28 @@ std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cell
 
 // Inserts, for each cube, the largest of the balls centered in it. The other balls hardly reach farther, and
 // a cell that still lacks a vertex is unknown in the next iteration.
-void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet& wanted) {
-  std::map<CubeId, CellId> largest;
-  const auto is_larger = [&](CellId a, CellId b) {  // a cell without a certified sphere is larger than all
-    const float of_a = mesh.cell(a).squared_radius, of_b = mesh.cell(b).squared_radius;
-    return !std::isnan(of_b) && !(of_a <= of_b);
+void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, std::size_t threads,
+                    CubeSet& wanted) {
+  struct InCube {
+    CubeId cube;
+    CellId cell;
   };
-  for (const CellId c : cells) {
-    CellId& here = largest.emplace(wanted.grid().cube_at(mesh.cell(c).center), c).first->second;
-    if (is_larger(c, here)) here = c;
-  }
-  for (const auto& [cube, c] : largest) Zone::insert_ball(mesh.cell(c), wanted);
+  auto by_cube = parallel_collect<InCube>(
+      cells.size(), threads, [&](std::size_t begin, std::size_t end, std::vector<InCube>& found) {
+        for (std::size_t i = begin; i < end; ++i)
+          found.push_back({wanted.grid().cube_at(mesh.cell(cells[i]).center), cells[i]});
+      });
+  // A cell without a certified sphere is larger than all others.
+  const auto radius_of = [&](const InCube& one) {
+    const float squared = mesh.cell(one.cell).squared_radius;
+    return std::isnan(squared) ? std::numeric_limits<float>::infinity() : squared;
+  };
+  parallel_sort(by_cube.begin(), by_cube.end(), threads, [&](const InCube& a, const InCube& b) {
+    return a.cube != b.cube ? a.cube < b.cube : radius_of(a) > radius_of(b);
+  });
+  for (std::size_t i = 0; i < by_cube.size(); ++i)
+    if (i == 0 || by_cube[i].cube != by_cube[i - 1].cube)
+      Zone::insert_ball(mesh.cell(by_cube[i].cell), wanted);
 }
 
 }  // namespace
@@ -89,13 +100,13 @@ Update complete(const Mesh& mesh, VertexSource& source, const CubeSet& own, int 
   for (;;) {
     const Zone zone(own, source.known(), rings);
     const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone, threads);
-    insert_largest(unknown, mesh, wanted);
+    insert_largest(unknown, mesh, threads, wanted);
     std::array<std::uint64_t, 1> more{unknown.size()};
     ranks.sum(more);
     if (more[0] == 0) return sum;
     std::vector<CellId> made;
     sum += source.update(wanted, &made);
-    candidates = around(mesh, made, unknown);
+    candidates = around(mesh, made, unknown, threads);
   }
 }
 

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "runtime/mix.h"
-#include "runtime/parallel_for.h"
+#include "runtime/parallel_collect.h"
+#include "runtime/parallel_sort.h"
 
 namespace podm {
 
@@ -83,57 +84,66 @@ Point LatticeSeeds::point_of(MortonCode code) const {
   return root_low_ + unit_mm * Vector{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]} + jitter_mm_ * Vector{x, y, z};
 }
 
-// Descends level by level. Returns the corners and centers of the taken nodes within the box, each once.
-template <class FateOf>
-std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of) const {
+// Descends level by level. Returns the corners and centers of the taken nodes that are within the box and
+// wanted, each once.
+template <class FateOf, class IsWanted>
+std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of, const IsWanted& is_wanted) const {
   constexpr std::size_t kLength = 64;
-  std::vector<Node> level{{{0, 0, 0}, 0}}, next;
+  const auto half_side = [](const Node& node) { return 1u << (kMostDepth - node.depth - 1); };
+  const auto corner_of = [](const Node& node, unsigned corner, std::uint32_t step) {
+    return GridPoint{node.low[0] + (corner & 1) * step, node.low[1] + (corner >> 1 & 1) * step,
+                     node.low[2] + (corner >> 2) * step};
+  };
+  std::vector<Node> level{{{0, 0, 0}, 0}};
   std::vector<MortonCode> codes;
   std::vector<Fate> fates;
-  for (; !level.empty(); level.swap(next)) {
+  while (!level.empty()) {
     fates.assign(level.size(), Fate::kSkipped);
     parallel_for_ranges(level.size(), kLength, threads_,
                         [&](std::size_t begin, std::size_t end, std::size_t) {
                           for (std::size_t i = begin; i < end; ++i) fates[i] = fate_of(level[i]);
                         });
-    next.clear();
-    for (std::size_t i = 0; i < level.size(); ++i) {
-      const GridPoint& low = level[i].low;
-      const unsigned depth = level[i].depth;
-      const std::uint32_t half = 1u << (kMostDepth - depth - 1);
-      const auto at = [&](unsigned corner, std::uint32_t step) {
-        return GridPoint{low[0] + (corner & 1) * step, low[1] + (corner >> 1 & 1) * step,
-                         low[2] + (corner >> 2) * step};
-      };
-      for (unsigned corner = 0; corner < 8 && fates[i] == Fate::kDivided; ++corner)
-        next.push_back({at(corner, half), depth + 1});
-      if (fates[i] != Fate::kTaken) continue;
-      for (unsigned corner = 0; corner < 8; ++corner) codes.push_back(morton_code(at(corner, 2 * half)));
-      codes.push_back(morton_code(at(7, half)));
-    }
+    const auto taken = parallel_collect<MortonCode>(
+        level.size(), threads_, [&](std::size_t begin, std::size_t end, std::vector<MortonCode>& found) {
+          for (std::size_t i = begin; i < end; ++i) {
+            if (fates[i] != Fate::kTaken) continue;
+            const std::uint32_t half = half_side(level[i]);
+            for (unsigned corner = 0; corner < 8; ++corner)
+              found.push_back(morton_code(corner_of(level[i], corner, 2 * half)));
+            found.push_back(morton_code(corner_of(level[i], 7, half)));
+          }
+        });
+    codes.insert(codes.end(), taken.begin(), taken.end());
+    level = parallel_collect<Node>(
+        level.size(), threads_, [&](std::size_t begin, std::size_t end, std::vector<Node>& children) {
+          for (std::size_t i = begin; i < end; ++i)
+            for (unsigned corner = 0; corner < 8 && fates[i] == Fate::kDivided; ++corner)
+              children.push_back({corner_of(level[i], corner, half_side(level[i])), level[i].depth + 1});
+        });
   }
-  std::sort(codes.begin(), codes.end());
+  parallel_sort(codes.begin(), codes.end(), threads_);
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
-  std::vector<Point> points;
-  for (const MortonCode code : codes)
-    if (const Point p = point_of(code); is_in(box_, p)) points.push_back(p);
-  return points;
+  return parallel_collect<Point>(codes.size(), threads_,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Point>& points) {
+                                   for (std::size_t i = begin; i < end; ++i)
+                                     if (const Point p = point_of(codes[i]); is_in(box_, p) && is_wanted(p))
+                                       points.push_back(p);
+                                 });
 }
 
 std::vector<Point> LatticeSeeds::in(const CubeSet& cubes) const {
   const CubeCounts counts(cubes);
   const double margin = 2 * jitter_mm_;
-  std::vector<Point> seeds = collect([&](const Node& node) {
+  const auto fate_of = [&](const Node& node) {
     const Box box = grown(box_of(node), margin);
     if (!counts.meets(cubes.grid().place_of(box.low), cubes.grid().place_of(box.high))) return Fate::kSkipped;
     return is_leaf(node) ? Fate::kTaken : Fate::kDivided;
-  });
-  std::erase_if(seeds, [&](const Point& p) { return !cubes.has(p); });
-  return seeds;
+  };
+  return collect(fate_of, [&](const Point& p) { return cubes.has(p); });
 }
 
 std::vector<Point> LatticeSeeds::sparse_around(const Box& box) const {
-  return collect([&](const Node& node) {
+  const auto fate_of = [&](const Node& node) {
     const Box its = box_of(node);
     const double distance_mm = std::max({gap(its.low.x, its.high.x, box.low.x, box.high.x),
                                          gap(its.low.y, its.high.y, box.low.y, box.high.y),
@@ -141,7 +151,8 @@ std::vector<Point> LatticeSeeds::sparse_around(const Box& box) const {
     if (is_in(box, its.low) && is_in(box, its.high)) return Fate::kSkipped;
     const bool is_far = side_mm(node) <= kSparseSideOverDistance * distance_mm;
     return is_far || is_leaf(node) ? Fate::kTaken : Fate::kDivided;
-  });
+  };
+  return collect(fate_of, [](const Point&) { return true; });
 }
 
 }  // namespace podm

@@ -63,8 +63,8 @@ class LatticeSeeds {
   Box box_of(const Node& node) const;
   bool is_leaf(const Node& node) const;
   Point point_of(MortonCode code) const;
-  template <class FateOf>
-  std::vector<Point> collect(const FateOf& fate_of) const;
+  template <class FateOf, class IsWanted>
+  std::vector<Point> collect(const FateOf& fate_of, const IsWanted& is_wanted) const;
 
   const Problem& problem_;
   const Box box_;

@@ -12,6 +12,7 @@
 #include "runtime/first_fault.h"
 #include "runtime/mix.h"
 #include "runtime/parallel_for.h"
+#include "runtime/parallel_sort.h"
 
 namespace podm {
 
@@ -192,6 +193,7 @@ Learner::Learner(Construction& construction, const CubeGrid& grid)
       grid_(grid),
       log_(construction.team().log),
       threads_(static_cast<std::size_t>(construction.num_workers())),
+      finders_pool_(construction.pool(0)),
       alone_(std::make_unique<OnThread<NoLocks>>(mesh_, construction.pool(0), 0, log_)) {
   for (WorkerId id = 0; threads_ > 1 && id < threads_; ++id)
     together_.push_back(std::make_unique<OnThread<VertexLocks>>(mesh_, construction.pool(id), id, log_));
@@ -223,7 +225,7 @@ std::vector<std::size_t> Learner::in_order(const std::vector<LearntVertex>& chan
                                        grid_.place_on_curve(p), i};
                         }
                       });
-  std::sort(places.begin(), places.end());
+  parallel_sort(places.begin(), places.end(), threads_);
   std::vector<std::size_t> order;
   order.reserve(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -256,7 +258,7 @@ void Learner::learn(const std::vector<LearntVertex>& changes, std::uint32_t logg
 
 // A thread takes a stretch of the curve at a time.
 void Learner::learn_on_threads(const Batch& batch, std::size_t begin, std::size_t end) {
-  constexpr std::size_t kStretch = 128, kLeastPerThread = 4 * kStretch;
+  constexpr std::size_t kStretch = 32, kLeastPerThread = 2 * kStretch;
   const std::size_t threads = std::min(together_.size(), (end - begin) / kLeastPerThread);
   if (threads < 2) return learn_alone(batch, begin, end);
   FirstFault fault;
@@ -284,6 +286,24 @@ void Learner::learn_alone(const Batch& batch, std::size_t begin, std::size_t end
 
 std::optional<CellId> Learner::find_cell(const std::array<Point, 4>& vertices) {
   return alone_->find_cell(vertices);
+}
+
+// Nothing changes meanwhile, so that no thread needs locks.
+std::vector<std::optional<CellId>> Learner::find_cells(
+    std::size_t count, const std::function<const std::array<Point, 4>&(std::size_t)>& vertices_of) {
+  constexpr std::size_t kStretch = 128;
+  while (finders_.size() < threads_)
+    finders_.push_back(std::make_unique<OnThread<NoLocks>>(mesh_, finders_pool_, 0, nullptr));
+  for (const auto& finder : finders_) finder->start_at(alone_->near());
+  std::vector<std::optional<CellId>> cells(count);
+  FirstFault fault;
+  parallel_for_ranges(count, kStretch, threads_, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    fault.guard([&] {
+      for (std::size_t i = begin; i < end; ++i) cells[i] = finders_[thread]->find_cell(vertices_of(i));
+    });
+  });
+  fault.rethrow();
+  return cells;
 }
 
 }  // namespace podm

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,6 +45,10 @@ class Learner {
   std::uint64_t num_put_off() const { return num_put_off_; }
   /// Returns the cell of the store that has these vertices, if there is one.
   std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
+  /// Does the same for the vertices vertices_of(i), i < count, on all threads. The search is short if those
+  /// of i and of i + 1 are near each other.
+  std::vector<std::optional<CellId>> find_cells(
+      std::size_t count, const std::function<const std::array<Point, 4>&(std::size_t)>& vertices_of);
 
  private:
   template <class Locks>
@@ -60,7 +65,9 @@ class Learner {
   OperationLogWriter* log_;
   std::size_t threads_;
   std::uint64_t num_put_off_ = 0;
+  Pool& finders_pool_;  // of operations that change nothing
   std::unique_ptr<OnThread<NoLocks>> alone_;
+  std::vector<std::unique_ptr<OnThread<NoLocks>>> finders_;       // empty until cells are searched
   std::vector<std::unique_ptr<OnThread<VertexLocks>>> together_;  // empty if there is one thread
 };
 

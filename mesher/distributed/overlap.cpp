@@ -33,7 +33,7 @@ class VerticesByCube {
     if (cubes.range().is_empty()) return;
     const CubeRange& range = cubes.range();
     of_cube_.resize(index_({range.high[0] - 1, range.high[1] - 1, range.high[2] - 1}) + 1);
-    constexpr std::size_t kLength = 1 << 14;
+    constexpr std::size_t kLength = 1 << 12;
     parallel_for_ranges(mesh.vertex_bound(), kLength, threads,
                         [&](std::size_t begin, std::size_t end, std::size_t) {
                           for (std::size_t v = begin; v < end; ++v)

@@ -10,6 +10,7 @@
 #include "podm/errors.h"
 #include "run/extract_mesh.h"
 #include "runtime/parallel_collect.h"
+#include "runtime/parallel_sort.h"
 #include "runtime/shared_word.h"
 
 namespace podm {
@@ -92,7 +93,7 @@ class PieceOfMesh {
               if (mirror != kNoFacet) found.push_back(cell_of(mirror));
           }
         });
-    std::sort(shared.begin(), shared.end());
+    parallel_sort(shared.begin(), shared.end(), threads_);
     shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
     in_parallel(shared.size(), [&](std::uint32_t i) { mesh_.make_canonical(shared[i]); });
   }
@@ -211,7 +212,7 @@ class PieceOfMesh {
   }
 
   static constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
-  static constexpr std::size_t kLength = 1 << 14;  // ids that a thread takes at a time
+  static constexpr std::size_t kLength = 1 << 12;  // ids that a thread takes at a time
 
   DistributedRefinement& refined_;
   Mesh& mesh_;

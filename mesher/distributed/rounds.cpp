@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "algorithms/leaf_size.h"
@@ -18,6 +17,7 @@
 #include "distributed/zones_of_round.h"
 #include "refine/dihedral_quality.h"
 #include "runtime/parallel_collect.h"
+#include "runtime/parallel_sort.h"
 
 namespace podm {
 
@@ -58,8 +58,9 @@ struct Ball {
   double radius_mm;
 };
 
-// The deferred cells in one cube.
+// The deferred cells with their centers in one cube.
 struct Waiting {
+  CubeId cube;
   std::uint32_t cells;
   Ball largest;
 };
@@ -230,8 +231,7 @@ class Rounds {
       spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
       if (knows_seeds && leaves_) entries = refine_leaves(zone, entries, report);
-      for (const CellId c : work_in(task, zone, entries, report))
-        left.push_back(name_of(construction_.mesh(), c));
+      add_names(work_in(task, zone, entries, report), left);
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
@@ -239,6 +239,23 @@ class Rounds {
       here = plan_next(round, left, report);
       rounds.push_back(report);
     } while (rounds.back().deferred > 0 && !is_over_);
+  }
+
+  void add_names(const std::vector<CellId>& cells, std::vector<CellName>& names) const {
+    const std::size_t before = names.size();
+    names.resize(before + cells.size());
+    for_each(cells.size(),
+             [&](std::size_t i) { names[before + i] = name_of(construction_.mesh(), cells[i]); });
+  }
+
+  // Calls work(i) for i < count, on all threads of the rank.
+  template <class Work>
+  void for_each(std::size_t count, const Work& work) const {
+    constexpr std::size_t kLength = 1 << 10;
+    parallel_for_ranges(count, kLength, learner_.threads(),
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t i = begin; i < end; ++i) work(i);
+                        });
   }
 
   // The block of this rank must be known.
@@ -334,30 +351,40 @@ class Rounds {
   // Returns the cubes whose vertices must be known in a zone with these deferred cells.
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
-    for (const auto& [cube, waiting] : by_cube(names))
-      wanted.insert(waiting.largest.center, kKnownOverRadius * waiting.largest.radius_mm);
+    for (const Waiting& here : by_cube(names))
+      wanted.insert(here.largest.center, kKnownOverRadius * here.largest.radius_mm);
     return wanted;
   }
 
   // Groups cells by the cube of their center. The largest ball of a cube stands for all, because the other
   // balls hardly reach other places.
-  std::map<CubeId, Waiting> by_cube(const std::vector<CellName>& names) const {
-    std::map<CubeId, Waiting> by_cube;
-    for (const CellName& name : names) {
-      const Ball ball = ball_of(name);
-      Waiting& here = by_cube.emplace(grid_.cube_at(ball.center), Waiting{0, ball}).first->second;
-      ++here.cells;
-      if (here.largest.radius_mm < ball.radius_mm) here.largest = ball;
+  std::vector<Waiting> by_cube(const std::vector<CellName>& names) const {
+    std::vector<Waiting> each(names.size());
+    for_each(names.size(), [&](std::size_t i) {
+      const Ball ball = ball_of(names[i]);
+      each[i] = {grid_.cube_at(ball.center), 1, ball};
+    });
+    parallel_sort(each.begin(), each.end(), learner_.threads(), [](const Waiting& a, const Waiting& b) {
+      return a.cube != b.cube ? a.cube < b.cube : a.largest.radius_mm > b.largest.radius_mm;
+    });
+    std::vector<Waiting> by_cube;
+    for (const Waiting& one : each) {
+      if (by_cube.empty() || by_cube.back().cube != one.cube) {
+        by_cube.push_back(one);
+      } else {
+        ++by_cube.back().cells;
+      }
     }
     return by_cube;
   }
 
   // Returns an order in which walks to these cells are short.
   std::vector<std::size_t> along_curve(const std::vector<CellName>& names) const {
-    std::vector<std::pair<MortonCode, std::size_t>> places;
-    for (std::size_t i = 0; i < names.size(); ++i)
-      places.emplace_back(grid_.place_on_curve(names[i].vertices[0]), i);
-    std::sort(places.begin(), places.end());
+    std::vector<std::pair<MortonCode, std::size_t>> places(names.size());
+    for_each(names.size(), [&](std::size_t i) {
+      places[i] = {grid_.place_on_curve(names[i].vertices[0]), i};
+    });
+    parallel_sort(places.begin(), places.end(), learner_.threads());
     std::vector<std::size_t> order;
     for (const auto& place : places) order.push_back(place.second);
     return order;
@@ -368,14 +395,18 @@ class Rounds {
   Construction::Entries find(const std::vector<CellName>& names, const Zone& zone,
                              std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
+    const std::vector<std::size_t> order = along_curve(names);
+    const auto cells = learner_.find_cells(
+        names.size(), [&](std::size_t i) -> const auto& { return names[order[i]].vertices; });
+    const auto is_left = [&](std::size_t i) {
+      if (cells[i]) return false;
+      const Ball ball = ball_of(names[order[i]]);
+      return !zone.is_ball_known(ball.center, ball.radius_mm);
+    };
     Construction::Entries entries;
-    for (const std::size_t i : along_curve(names)) {
-      const CellName& name = names[i];
-      if (const auto cell = learner_.find_cell(name.vertices)) {
-        entries.push_back({*cell, mesh.stamp(*cell)});
-      } else if (const Ball ball = ball_of(name); !zone.is_ball_known(ball.center, ball.radius_mm)) {
-        left.push_back(name);
-      }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (cells[i]) entries.push_back({*cells[i], mesh.stamp(*cells[i])});
+      if (is_left(i)) left.push_back(names[order[i]]);
     }
     return entries;
   }
@@ -498,12 +529,16 @@ class Rounds {
         zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, exchange_.writers(), load_);
     if (zones.are_connected) reach_over_radius_ *= 2;
     zone_of_ = std::move(zones.rank_of_cube);
+    std::vector<int> rank_of(left.size());
+    for_each(left.size(),
+             [&](std::size_t i) { rank_of[i] = zone_of_[grid_.cube_at(ball_of(left[i]).center)]; });
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
-    for (const CellName& name : left) {
-      const int rank = zone_of_[grid_.cube_at(ball_of(name).center)];
-      names.at(static_cast<std::size_t>(rank)).push_back(name);
-    }
-    return exchanged(names);
+    for (std::size_t i = 0; i < left.size(); ++i)
+      names.at(static_cast<std::size_t>(rank_of[i])).push_back(left[i]);
+    std::vector<CellName> here = std::exchange(names[static_cast<std::size_t>(ranks_.rank())], {});
+    const std::vector<CellName> more = exchanged(names);
+    here.insert(here.end(), more.begin(), more.end());
+    return here;
   }
 
   // Returns the cubes that the deferred cells of all ranks request. Sets num_waiting_ to the number of cells
@@ -512,9 +547,9 @@ class Rounds {
     CubeSet around(grid_), waiting(grid_);
     Bytes message;
     std::vector<CubeCount> counts;
-    for (const auto& [cube, here] : by_cube(left)) {
+    for (const Waiting& here : by_cube(left)) {
       around.insert(here.largest.center, reach_over_radius_ * here.largest.radius_mm);
-      counts.push_back({cube, here.cells});
+      counts.push_back({here.cube, here.cells});
     }
     append(message, around.cubes());
     append(message, counts);

@@ -1,13 +1,21 @@
 #include "distributed/vertex_exchange.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "distributed/messages.h"
 #include "distributed/overlap.h"
 #include "runtime/parallel_collect.h"
+#include "runtime/parallel_sort.h"
 
 namespace podm {
+
+namespace {
+
+bool is_less(const LearntVertex& a, const LearntVertex& b) {
+  return lexicographically_less(a.point, b.point);
+}
+
+}  // namespace
 
 void VertexExchange::begin(const std::vector<int>& writer_of_cube, const CubeSet& known) {
   writer_of_ = writer_of_cube;
@@ -40,57 +48,68 @@ void VertexExchange::check() const {
 
 // Returns, for each rank, the cubes that it requested and all vertices in them.
 std::vector<Bytes> VertexExchange::answers_to(const std::vector<Bytes>& asked) const {
-  struct Answer {
-    std::size_t rank;
-    std::vector<CubeId> cubes;
-    std::vector<SentVertex> vertices;
-  };
-  std::vector<Answer> answers;
-  std::unordered_multimap<CubeId, std::size_t> answers_of;  // by cube
+  std::vector<std::vector<CubeId>> cubes_for(asked.size());  // by rank
   CubeSet asked_for(grid_);
   for (std::size_t rank = 0; rank < asked.size(); ++rank) {
-    if (asked[rank].empty()) continue;
-    MessageReader question(asked[rank]);
-    answers.push_back({rank, question.read<CubeId>(), {}});
-    question.expect_end();
-    for (const CubeId cube : answers.back().cubes) {
-      answers_of.emplace(cube, answers.size() - 1);
-      asked_for.insert(cube);
-    }
+    cubes_for[rank] = values_of<CubeId>(asked[rank]);
+    for (const CubeId cube : cubes_for[rank]) asked_for.insert(cube);
   }
-  if (answers.empty()) return std::vector<Bytes>(asked.size());
   struct InCube {
     CubeId cube;
     SentVertex vertex;
   };
   const Mesh& mesh = learner_.mesh();
-  const auto vertices = parallel_collect<InCube>(mesh.vertex_bound(), learner_.threads(),
-                                                 [&](std::size_t begin, std::size_t end, auto& found) {
-                                                   for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
-                                                     const Vertex& vertex = mesh.vertex(v);
-                                                     if (!is_shared(vertex.kind)) continue;
-                                                     const CubeId cube = grid_.cube_at(vertex.point);
-                                                     if (asked_for.has(cube))
-                                                       found.push_back({cube, {vertex.point, vertex.kind}});
-                                                   }
-                                                 });
-  for (const InCube& found : vertices) {
-    const auto [first, last] = answers_of.equal_range(found.cube);
-    for (auto it = first; it != last; ++it) answers[it->second].vertices.push_back(found.vertex);
-  }
+  auto vertices =
+      parallel_collect<InCube>(asked_for.range().is_empty() ? 0 : mesh.vertex_bound(), learner_.threads(),
+                               [&](std::size_t begin, std::size_t end, std::vector<InCube>& found) {
+                                 for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
+                                   const Vertex& vertex = mesh.vertex(v);
+                                   if (!is_shared(vertex.kind)) continue;
+                                   const CubeId cube = grid_.cube_at(vertex.point);
+                                   if (asked_for.has(cube))
+                                     found.push_back({cube, {vertex.point, vertex.kind}});
+                                 }
+                               });
+  const auto by_cube = [](const InCube& a, const InCube& b) { return a.cube < b.cube; };
+  parallel_sort(vertices.begin(), vertices.end(), learner_.threads(), by_cube);
   std::vector<Bytes> messages(asked.size());
-  for (const Answer& answer : answers) {
-    append(messages[answer.rank], answer.cubes);
-    append(messages[answer.rank], answer.vertices);
-  }
+  FirstFault fault;
+  parallel_for(asked.size(), learner_.threads(), [&](std::size_t rank, std::size_t) {
+    fault.guard([&] {
+      if (cubes_for[rank].empty()) return;
+      std::vector<SentVertex> answer;
+      for (const CubeId cube : cubes_for[rank]) {
+        const auto [first, last] =
+            std::equal_range(vertices.begin(), vertices.end(), InCube{cube, {}}, by_cube);
+        for (auto it = first; it != last; ++it) answer.push_back(it->vertex);
+      }
+      append(messages[rank], cubes_for[rank]);
+      append(messages[rank], answer);
+    });
+  });
+  fault.rethrow();
   return messages;
 }
 
-// Compares both sets of vertices in the order of their coordinates.
+// Returns the vertices of `all` that are not among `others`. Both are sorted by coordinates.
+std::vector<LearntVertex> VertexExchange::missing(const std::vector<LearntVertex>& all,
+                                                  const std::vector<LearntVertex>& others) const {
+  return parallel_collect<LearntVertex>(
+      all.size(), learner_.threads(),
+      [&](std::size_t begin, std::size_t end, std::vector<LearntVertex>& found) {
+        auto other = std::lower_bound(others.begin(), others.end(), all[begin], is_less);
+        for (std::size_t i = begin; i < end; ++i) {
+          while (other != others.end() && is_less(*other, all[i])) ++other;
+          if (other == others.end() || is_less(all[i], *other)) found.push_back(all[i]);
+        }
+      });
+}
+
+// Returns our vertices that they lack, to be removed, then their vertices that we lack.
 std::vector<LearntVertex> VertexExchange::differences(const std::vector<Bytes>& received,
                                                       Update& update) const {
   CubeSet cubes(grid_);
-  std::vector<LearntVertex> theirs, changes;
+  std::vector<LearntVertex> theirs;
   for (const Bytes& message : received) {
     if (message.empty()) continue;
     MessageReader reader(message);
@@ -99,27 +118,24 @@ std::vector<LearntVertex> VertexExchange::differences(const std::vector<Bytes>& 
     reader.expect_end();
   }
   update.vertices_received = theirs.size();
-  if (update.cubes == 0) return changes;
+  if (update.cubes == 0) return {};
   const Mesh& mesh = learner_.mesh();
-  auto ours = parallel_collect<LearntVertex>(mesh.vertex_bound(), learner_.threads(),
-                                             [&](std::size_t begin, std::size_t end, auto& found) {
-                                               for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
-                                                 const Vertex& vertex = mesh.vertex(v);
-                                                 if (is_shared(vertex.kind) && cubes.has(vertex.point))
-                                                   found.push_back({vertex.point, VertexKind::kUnused});
-                                               }
-                                             });
-  const auto less = [](const LearntVertex& a, const LearntVertex& b) {
-    return lexicographically_less(a.point, b.point);
-  };
-  std::sort(theirs.begin(), theirs.end(), less);
-  std::sort(ours.begin(), ours.end(), less);
-  std::set_difference(ours.begin(), ours.end(), theirs.begin(), theirs.end(), std::back_inserter(changes),
-                      less);
+  auto ours = parallel_collect<LearntVertex>(
+      mesh.vertex_bound(), learner_.threads(),
+      [&](std::size_t begin, std::size_t end, std::vector<LearntVertex>& found) {
+        for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
+          const Vertex& vertex = mesh.vertex(v);
+          if (is_shared(vertex.kind) && cubes.has(vertex.point))
+            found.push_back({vertex.point, VertexKind::kUnused});
+        }
+      });
+  parallel_sort(theirs.begin(), theirs.end(), learner_.threads(), is_less);
+  parallel_sort(ours.begin(), ours.end(), learner_.threads(), is_less);
+  std::vector<LearntVertex> changes = missing(ours, theirs);
   update.removed = changes.size();
-  std::set_difference(theirs.begin(), theirs.end(), ours.begin(), ours.end(), std::back_inserter(changes),
-                      less);
-  update.inserted = changes.size() - update.removed;
+  const std::vector<LearntVertex> inserted = missing(theirs, ours);
+  update.inserted = inserted.size();
+  changes.insert(changes.end(), inserted.begin(), inserted.end());
   return changes;
 }
 

@@ -37,6 +37,8 @@ class VertexExchange : public VertexSource {
   };
 
   std::vector<Bytes> answers_to(const std::vector<Bytes>& asked) const;
+  std::vector<LearntVertex> missing(const std::vector<LearntVertex>& all,
+                                    const std::vector<LearntVertex>& others) const;
   std::vector<LearntVertex> differences(const std::vector<Bytes>& received, Update& update) const;
 
   Communication& ranks_;

@@ -17,7 +17,7 @@ namespace podm {
 namespace {
 
 // Threads share the work in chunks of ids.
-constexpr std::size_t kChunk = 1 << 13;
+constexpr std::size_t kChunk = 1 << 11;
 
 std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
 

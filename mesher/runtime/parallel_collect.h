@@ -14,7 +14,7 @@ namespace podm {
 /// threads. Throws the first exception that collect() throws.
 template <class Item, class Collect>
 std::vector<Item> parallel_collect(std::size_t size, std::size_t threads, const Collect& collect) {
-  constexpr std::size_t kLength = 1 << 14;
+  constexpr std::size_t kLength = 1 << 12;
   std::vector<std::vector<Item>> lists((size + kLength - 1) / kLength);
   FirstFault fault;
   parallel_for_ranges(size, kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
