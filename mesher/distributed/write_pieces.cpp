@@ -24,7 +24,8 @@ LabelPairs gathered(const LabelPairs& own, Communication& ranks) {
   return LabelPairs(pairs);
 }
 
-// Returns the text of the first rank.
+}  // namespace
+
 std::string text_of_first_rank(const std::string& text, Communication& ranks) {
   Bytes message;
   append(message, std::span<const char>(text));
@@ -32,8 +33,6 @@ std::string text_of_first_rank(const std::string& text, Communication& ranks) {
   const std::vector<char> first = MessageReader(all.front()).read<char>();
   return {first.begin(), first.end()};
 }
-
-}  // namespace
 
 void check_pieces_path(const std::string& path) {
   if (!path.ends_with(".pvtu") && !path.ends_with(".xdmf"))

@@ -26,4 +26,12 @@ void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& 
 /// file, which gets its name when it is complete. Collective, and throws as write_pieces() does.
 void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
+/// Writes one closed surface per label, as write_surfaces() of podm/mesh_io.h does on one machine. All ranks
+/// write to each file at once. The files get their names together when they are complete. Collective. Throws
+/// RefusedByAll as write_pieces() does, also if the format cannot number the vertices or facets of a label.
+void write_surfaces(const MeshPiece& piece, const std::string& path, Communication& ranks);
+
+/// Returns the text of the first rank. Collective.
+std::string text_of_first_rank(const std::string& text, Communication& ranks);
+
 }  // namespace podm

@@ -44,6 +44,25 @@ void fail_to_write(const std::string& path, int error_number) {
   throw InputError(fmt::format("cannot write {}: {}", path, std::generic_category().message(error_number)));
 }
 
+void write_at(const std::string& file, const std::string& path, std::uint64_t offset,
+              std::string_view bytes) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_to_write(path, errno);
+  int error_number = 0;
+  while (!bytes.empty() && error_number == 0) {
+    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0) {
+      error_number = errno == EINTR ? 0 : errno;
+      continue;
+    }
+    offset += static_cast<std::uint64_t>(written);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (error_number == 0) error_number = sync_error(descriptor);
+  ::close(descriptor);
+  if (error_number != 0) fail_to_write(path, error_number);
+}
+
 TemporaryFile::TemporaryFile(const std::string& path)
     : path_(path), target_(resolve_target(path)), temporary_(make_temporary(target_, make_file)) {
   if (temporary_.descriptor < 0) fail_to_write(path_, temporary_.error_number);

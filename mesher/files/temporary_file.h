@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "files/temporary_name.h"
 
@@ -13,6 +15,10 @@ namespace podm {
 
 /// Throws InputError: "cannot write PATH: " and the system's message.
 [[noreturn]] void fail_to_write(const std::string& path, int error_number);
+
+/// Writes the bytes to the disk, at an offset of the existing file `file`, which another process may have
+/// made. Reports failure through fail_to_write(path).
+void write_at(const std::string& file, const std::string& path, std::uint64_t offset, std::string_view bytes);
 
 class TemporaryFile {
  public:

@@ -180,6 +180,15 @@ class Meshes(OnRanks):
                 self.assertLess(sum(ours["after"].values()), 1.5 * sum(theirs["after"].values()) + 20)
                 self.assertGreater(len(record["ranks"]["perturbing_rounds"]), 1)
 
+    def test_surfaces_are_those_of_the_pieces(self):
+        surface = self.folder / "s.ply"
+        self.assert_exit(self.mesh(3, "--radius", 4, "--surface", surface), 0)
+        names = {name for name in self.names() if name.startswith("s_")}
+        self.assertTrue(names)
+        written = {name: (self.folder / name).stat().st_size for name in names}
+        self.assert_exit(run_podm("convert", self.out, surface), 0)
+        self.assertEqual({name: (self.folder / name).stat().st_size for name in names}, written)
+
     def test_more_ranks_than_there_is_to_do(self):
         image = write_nifti(self.folder / "ball.nii", ball_voxels(12))
         self.assert_exit(self.mesh(6, "--radius", 6, "--delta", 3, image=image), 0)
@@ -398,7 +407,6 @@ class Refusals(OnRanks):
 
     def test_what_ranks_do_not_have_yet(self):
         for option, *words in (["--optimize", "--optimize"], ["--algorithm", "podm-home", "algorithm podm-home"],
-                               ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
             with self.subTest(option=option):

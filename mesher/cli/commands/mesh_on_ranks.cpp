@@ -29,6 +29,7 @@ namespace {
 void check_command(const MeshCommand& command) {
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
+  if (!command.surface_path.empty()) check_surface_path(command.surface_path);
   if (command.verify) check_verifier(command);
 }
 
@@ -42,7 +43,10 @@ class Run {
     MeshRun run = prepare();
     MeshingOnRanks result = mesh(run);
     const double start_s = ranks_.seconds();
-    if (result.piece.total_cells > 0) write_pieces(result.piece, command_.mesh_path, ranks_);
+    if (result.piece.total_cells > 0) {
+      write_pieces(result.piece, command_.mesh_path, ranks_);
+      if (!command_.surface_path.empty()) write_surfaces(result.piece, command_.surface_path, ranks_);
+    }
     run.report = std::move(result.report);
     if (log_) write_log(run, result.mesh_hash);
     run.write_s = ranks_.seconds() - start_s;
@@ -80,6 +84,7 @@ class Run {
     expect_agreement({{"program", "SHA-256 " + file_sha256(kOwnProgram)},
                       {"output", command_.mesh_path},
                       {"--log", command_.log_path},
+                      {"--surface", command_.surface_path},
                       {"--verify", command_.verify ? "requested" : "not requested"}},
                      ranks_);
   }

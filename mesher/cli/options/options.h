@@ -97,7 +97,7 @@ struct MeshCommand {
         nested(&M::mesh_file),
         option(&M::surface_path, "surface", "FILE", kOutput,
                "also write the closed surface of each label: .stl or .ply",
-               {.unset = "none", .uses = kOfFiles, .not_on_ranks = "no rank holds a closed surface"}),
+               {.unset = "none", .uses = kOfFiles}),
         option(&M::record_path, "record", "FILE", kOutput, "append one JSON line that describes the run",
                {.unset = "none", .uses = kOfFiles}),
         option(&M::page_path, "report", "PAGE", kOutput,

@@ -121,6 +121,25 @@ TEST(WriteXdmf, LabelsThatAreNoTagsGoByTheirRows) {
   EXPECT_TRUE(std::equal(labels.begin(), labels.end(), mesh.cell_labels.begin(), mesh.cell_labels.end()));
 }
 
+TEST(WriteSurfaces, RanksWriteWhatOneWouldToTheByte) {
+  const ScratchFolder folder;
+  const TetMesh mesh = make_test_mesh();
+  for (const char* extension : {".ply", ".stl"}) {
+    for (const int num_pieces : {1, 2, 5, 13}) {
+      write_surfaces(in_order_of_pieces(mesh, num_pieces), folder / ("one" + std::string(extension)));
+      write_in_pieces(mesh, num_pieces, folder / ("all" + std::string(extension)), write_surfaces);
+      std::size_t num_surfaces = 0;
+      for (const std::string& name : folder.files()) {
+        if (!name.starts_with("one")) continue;
+        EXPECT_EQ(folder.read("all" + name.substr(3)), folder.read(name)) << num_pieces << " " << name;
+        ++num_surfaces;
+      }
+      EXPECT_EQ(2 * num_surfaces, folder.files().size());
+      for (const std::string& name : folder.files()) std::filesystem::remove(folder / name);
+    }
+  }
+}
+
 TEST(WritePvtu, PiecesOfALargerMeshGoWithItsIndex) {
   const ScratchFolder folder;
   const TetMesh mesh = make_test_mesh();
