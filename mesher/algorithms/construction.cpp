@@ -27,13 +27,14 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
 }
 
 // On a rank in virtual time the schedule of virtual time decides how busy the workers are. The processor
-// seconds of their work are those that it took here.
-void Construction::note_virtual_time(const std::string& phase, const VirtualTime& time, double processor_s) {
+// seconds of their work are those that it took here. Threads would also have to be started.
+void Construction::note_virtual_time(const std::string& phase, const VirtualTime& time) {
   result_.virtual_phases_s[phase] += time.now_s();
   result_.virtual_spending += time.spending();
   VirtualThreads* const threads = VirtualThreads::current();
-  if (threads != nullptr && time.busy_s() > 0)
-    threads->replace(processor_s, processor_s * time.now_s() / time.busy_s());
+  if (threads == nullptr || time.busy_s() == 0) return;
+  const double start_s = (num_workers() - 1) * TimeCosts().thread_started;
+  threads->replace(time.processor_s(), start_s + time.processor_s() * time.now_s() / time.busy_s());
 }
 
 Construction::Entries Construction::all_cells() const {

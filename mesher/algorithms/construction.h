@@ -21,7 +21,6 @@
 #include "refine/rules.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
-#include "runtime/processor_seconds.h"
 #include "workers/accounting.h"
 #include "workers/coordination.h"
 #include "workers/real_time.h"
@@ -146,9 +145,8 @@ class Construction {
     const auto count = static_cast<std::size_t>(num_workers);
     if (team_.executor == Executor::kVirtual) {
       VirtualTime time(stop_, count, team_.cost, team_.coordination.seed, team_.model, nodes_of_first(count));
-      const double start_s = processor_seconds();
       action(time);
-      note_virtual_time(phase, time, processor_seconds() - start_s);
+      note_virtual_time(phase, time);
     } else {
       RealTime time(stop_, count, places_of_first(count));
       action(time);
@@ -209,7 +207,7 @@ class Construction {
     if (worker.accesses()) accesses_[id].addresses = worker.accesses()->samples();
   }
   void log(const Relocation& relocation);
-  void note_virtual_time(const std::string& phase, const VirtualTime& time, double processor_s);
+  void note_virtual_time(const std::string& phase, const VirtualTime& time);
   void charge_virtual(const std::string& phase, const PhaseWork& work) {
     if (team_.executor == Executor::kVirtual) result_.virtual_phases_s[phase] += virtual_seconds(team_, work);
   }

@@ -158,6 +158,7 @@ class Operation {
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
+  bool knows_beyond_boundary() const;
   StepResult dig(CellId c, const Point& p);
   StepResult dig_beyond(FacetId facet, const Point& p);
   double squared_distance_to_region(const Point& p) const;

@@ -167,6 +167,7 @@ StepResult Operation<Locks>::plan_move(VertexId v, CellId seed) {
   if (const StepResult planned = plan_removal(v, seed); planned != StepResult::kDone) return planned;
   num_in_ball_ = region_.cells.size();
   collect_boundary();
+  if (!knows_beyond_boundary()) return StepResult::kOutOfReach;
   if (!hole_.plan(mesh_, region_, nullptr) || !VertexMove::has_ids_for(hole_.num_cells()))
     return StepResult::kTooNear;
   move_.begin(v, hole_);
@@ -255,6 +256,19 @@ void Operation<Locks>::collect_boundary() {
       const FacetId mirror = mesh_.cell(c).mirrors[k];
       if (mirror == kNoFacet || !mesh_.is_marked(cell_of(mirror))) region_.boundary.push_back(4 * c + k);
     }
+  }
+}
+
+// Each of these cells shares a facet with the region, and therefore has vertices within the horizon.
+template <class Locks>
+bool Operation<Locks>::knows_beyond_boundary() const {
+  if constexpr (HasHorizon<Locks>) {
+    return std::all_of(region_.boundary.begin(), region_.boundary.end(), [&](FacetId facet) {
+      const FacetId mirror = mesh_.cell(cell_of(facet)).mirrors[static_cast<unsigned>(index_in_cell(facet))];
+      return mirror == kNoFacet || is_known(cell_of(mirror));
+    });
+  } else {
+    return true;
   }
 }
 

@@ -252,13 +252,17 @@ class Rounds {
   template <class Work>
   void for_each(std::size_t count, const Work& work) const {
     constexpr std::size_t kLength = 1 << 10;
+    FirstFault fault;
     parallel_for_ranges(count, kLength, learner_.threads(),
                         [&](std::size_t begin, std::size_t end, std::size_t) {
-                          for (std::size_t i = begin; i < end; ++i) work(i);
+                          fault.guard([&] {
+                            for (std::size_t i = begin; i < end; ++i) work(i);
+                          });
                         });
+    fault.rethrow();
   }
 
-  // The block of this rank must be known.
+  // A poor cell whose ball reaches beyond the known cubes may be absent here. R7 does not try it.
   Construction::Entries first_entries(Task task) {
     if (task == Task::kRefine) return own_cells();
     Construction::Entries poor = own_poor_cells();
@@ -477,7 +481,11 @@ class Rounds {
       construction_.in_time(phase, construction_.num_workers(), [&](auto& time) {
         share_out(entries, workers);
         if (task == Task::kPerturb) {
-          perturb_listed(construction_, workers, time);
+          try {
+            perturb_listed(construction_, workers, time);
+          } catch (const std::bad_alloc&) {  // for the lists between efforts
+            stop_.end(StopReason::kMemoryLimit);
+          }
           construction_.account(workers, time);
         } else {
           refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), {}, time);

@@ -38,7 +38,8 @@
 //
 // Ranks apply R7 in zones (distributed/zone.h), for the same reason. A move holds the vertices in its zone,
 // and a cell that it reads has a vertex there. A neighbour of that cell has one, too. A move in another zone
-// replaces only cells without such a vertex.
+// replaces only cells without such a vertex. The cells beyond the vertex's ball, and those beyond the cavity
+// of its new place, are read as well; a move ends if one of them is not known to be a cell of the whole.
 #pragma once
 
 #include <algorithm>

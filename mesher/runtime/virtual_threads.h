@@ -33,7 +33,7 @@ class VirtualThreads {
       for (std::size_t i = 0; i < count; ++i) work(i, 0);
       return;
     }
-    is_in_loop_ = true;
+    const InLoop in_loop(is_in_loop_);
     std::vector<double> free_at_s(std::clamp<std::size_t>(threads, 1, count));
     for (std::size_t t = 1; t < free_at_s.size(); ++t)
       free_at_s[t] = static_cast<double>(t) * TimeCosts().thread_started;
@@ -46,7 +46,6 @@ class VirtualThreads {
       *first_free += now_s - before_s;
     }
     replace(now_s - start_s, *std::max_element(free_at_s.begin(), free_at_s.end()));
-    is_in_loop_ = false;
   }
   /// The virtual threads took `virtual_s` seconds for what the rank's thread did in `processor_s`.
   void replace(double processor_s, double virtual_s) { saved_s_ += processor_s - virtual_s; }
@@ -63,6 +62,15 @@ class VirtualThreads {
   };
 
  private:
+  class InLoop {
+   public:
+    explicit InLoop(bool& is_in_loop) : is_in_loop_(is_in_loop) { is_in_loop_ = true; }
+    ~InLoop() { is_in_loop_ = false; }
+
+   private:
+    bool& is_in_loop_;
+  };
+
   static inline thread_local VirtualThreads* current_ = nullptr;
   double saved_s_ = 0;
   bool is_in_loop_ = false;

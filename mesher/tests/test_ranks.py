@@ -175,9 +175,9 @@ class Meshes(OnRanks):
                 ours, theirs = record["perturbed"], self.last_record()["perturbed"]
                 self.assertEqual(sum(ours["after"].values()), sum(ours["unmoved"].values()))
                 self.assertEqual(ours["unmoved"]["not_reached"], 0)
-                first = record["ranks"]["perturbing_rounds"][0]
-                self.assertEqual(sum(ours["before"].values()), first["entries"])
-                self.assertLess(sum(ours["after"].values()), 1.5 * sum(theirs["after"].values()) + 20)
+                for name in "before", "after":
+                    self.assertLess(sum(ours[name].values()), 1.2 * sum(theirs[name].values()) + 20)
+                self.assertGreater(sum(ours["before"].values()), 0.8 * sum(theirs["before"].values()))
                 self.assertGreater(len(record["ranks"]["perturbing_rounds"]), 1)
 
     def test_surfaces_are_those_of_the_pieces(self):
@@ -215,7 +215,7 @@ class Meshes(OnRanks):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
-        self.assertIn("Not on ranks: --surface; no rank", process.stdout)
+        self.assertIn("Not on ranks: --report; the page", process.stdout)
 
 
 class InProcess(OnRanks):

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "podm/errors.h"
+#include "runtime/processor_seconds.h"
 
 namespace podm {
 
@@ -35,6 +36,7 @@ VirtualSpending& VirtualSpending::operator+=(const VirtualSpending& b) {
 }
 
 void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
+  const double start_s = processor_seconds();
   for (WorkerId self = 0; self < states_.size(); ++self) {
     states_[self].fibre = std::make_unique<Fibre>([&work, self] { work(self); });
     schedule(self, 0);
@@ -54,6 +56,7 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
   if (!is_over() && std::any_of(states_.begin(), states_.end(), is_at_work))
     throw InternalError("virtual time cannot advance: every worker waits");
   finish_all();
+  processor_s_ += processor_seconds() - start_s;
 } catch (const std::bad_alloc&) {
   stop_.end(StopReason::kMemoryLimit);
   finish_all();

@@ -94,6 +94,8 @@ class VirtualTime {
   const VirtualSpending& spending() const { return spending_; }
   /// Virtual seconds in which the processors of all workers were busy.
   double busy_s() const;
+  /// Processor seconds that run() took.
+  double processor_s() const { return processor_s_; }
   /// The costs that accounted operations spend.
   const TimeCosts& costs() const { return costs_; }
 
@@ -143,7 +145,7 @@ class VirtualTime {
   std::vector<WorkerState> states_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t num_events_ = 0;
-  double now_s_ = 0;
+  double now_s_ = 0, processor_s_ = 0;
 };
 
 }  // namespace podm

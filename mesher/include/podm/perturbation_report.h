@@ -31,7 +31,9 @@ struct PerturbationReport {
   };
   Cells before, after;
   std::array<std::uint64_t, Names<Unmoved>::kAll.size()> unmoved{};  ///< cells of `after`, by reason
-  std::uint64_t not_reached = 0;  ///< cells of `after` that were not tried because the run ended early
+  /// Cells of `after` that were not tried because the run ended early, or on ranks because their balls
+  /// reached beyond what their rank knew.
+  std::uint64_t not_reached = 0;
 };
 
 }  // namespace podm
