@@ -95,14 +95,16 @@ class PoorElementList {
   const Entry& at(std::size_t i) const { return chunks_[i >> kChunkBits][i % kChunk]; }
   // The list keeps the memory into which it will grow before its next cleaning, but at most as much as it
   // fills. The system takes longer to take pages back, which interrupts all threads, and to provide new ones
-  // than the list takes to fill them. One chunk beyond the last entry may soon be needed.
+  // than the list takes to fill them. One chunk beyond the last entry may soon be needed. Chunks of taken
+  // entries, at the front, serve again at the back, so that a list of which others take and to which its
+  // worker adds asks the system for nothing.
   void give_back() {
     const std::size_t soon = std::min(next_cleaning_, 2 * size() + first_cleaning_),
                       kept = std::max(end_ + kChunk, begin_ + soon);
     const auto unused = static_cast<std::ptrdiff_t>(begin_ >> kChunkBits),
                used = static_cast<std::ptrdiff_t>((kept + kChunk - 1) >> kChunkBits);
-    if (used < std::ssize(chunks_)) chunks_.erase(chunks_.begin() + used, chunks_.end());
-    chunks_.erase(chunks_.begin(), chunks_.begin() + unused);
+    std::rotate(chunks_.begin(), chunks_.begin() + unused, chunks_.end());
+    if (used - unused < std::ssize(chunks_)) chunks_.erase(chunks_.begin() + (used - unused), chunks_.end());
     begin_ %= kChunk;
     end_ -= static_cast<std::size_t>(unused) << kChunkBits;
     if (end_ % kChunk != 0) top_ = &at(end_ - end_ % kChunk);

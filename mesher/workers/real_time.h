@@ -37,19 +37,21 @@ class RealTime {
     // The worker that holds the vertices may need this processor. Without the yield `aggressive` hardly
     // terminates where threads outnumber processors.
     if (outcome == Outcome::kLockConflict) std::this_thread::yield();
-    if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
+    if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) {
+      states_[worker.id()].meter.report_if_due(worker, states_.size(), stop_);
+      check_and_observe(worker.id());
+    }
     return outcome;
   }
   /// Accounted operations (workers/accounting.h) cost nothing here: they take the time that they take.
   static void spend(WorkerId, double) {}
   static void spend_in(const void*, WorkerId, double) {}
   static constexpr TimeCosts costs() { return {}; }
-  /// Ends the run if a limit is exceeded. Called now and then, and when a worker has nothing to do.
+  /// Reports all cells of a worker whose work is over, and ends the run if a limit is exceeded.
   template <class Worker>
   void check_limits(const Worker& worker) {
     states_[worker.id()].meter.report(worker, stop_);
-    stop_.check_limits();
-    if (worker.id() == 0) stop_.observe();
+    check_and_observe(worker.id());
   }
   /// Waits until another worker resumes `self`, which may have happened before, or until the run is over. The
   /// time is charged to `cause`.
@@ -86,6 +88,10 @@ class RealTime {
     ThreadProcessor processor;
   };
 
+  void check_and_observe(WorkerId self) {
+    stop_.check_limits();
+    if (self == 0) stop_.observe();
+  }
   void work_on_thread(const std::function<void(WorkerId)>& work, WorkerId self);
   void fail();
 

@@ -1,9 +1,12 @@
 // Ends a run at a limit or on request. Workers check it between operations.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <stop_token>
 
@@ -17,6 +20,9 @@ class StopControl {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr int kAttemptsBetweenChecks = 1 << 8;  // a worker makes them in well below a millisecond
+  // A worker adds these cells in some ten milliseconds. If 256 workers reported at each check, the cache line
+  // of the number would pass from one to the next millions of times per second.
+  static constexpr std::int64_t kLongestReportingStep = 1 << 14;
 
   /// Limits the cells of the store, and the seconds from `start` on. A lack of memory shows itself.
   /// `observe(cells)` is called a few times per second. A request of `stop` ends the run at once, so that
@@ -40,6 +46,14 @@ class StopControl {
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
   /// The number of cells added.
   std::int64_t num_cells() const { return num_cells_; }
+  /// The number of cells that each of `num_workers` workers may keep unreported: together a fourth of what
+  /// the limit leaves, so that the end is not missed. Without a limit only observe() reads the number.
+  std::int64_t reporting_step(std::size_t num_workers) const {
+    if (max_elements_ == 0) return kLongestReportingStep;
+    const std::int64_t left = max_cells_ - num_cells_.load(std::memory_order_relaxed);
+    return std::clamp<std::int64_t>(left / (4 * static_cast<std::int64_t>(num_workers)), 0,
+                                    kLongestReportingStep);
+  }
   /// Ends the run if a limit is exceeded.
   void check_limits();
   /// Ends the run. The first reason counts.
@@ -79,6 +93,11 @@ class CellMeter {
   void report(const Worker& worker, StopControl& stop) {
     stop.add_cells(worker.net_cells() - reported_);
     reported_ = worker.net_cells();
+  }
+  /// Reports once the cells of one of `num_workers` workers are as many as one report is worth.
+  template <class Worker>
+  void report_if_due(const Worker& worker, std::size_t num_workers, StopControl& stop) {
+    if (std::abs(worker.net_cells() - reported_) >= stop.reporting_step(num_workers)) report(worker, stop);
   }
 
  private:

@@ -17,7 +17,8 @@ FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_s
                             r"|cells_over_one_machine)\b"
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
-# For workers in virtual time these are virtual seconds and counts, which do not depend on the machine either.
+# For workers in virtual time these are virtual seconds and counts, which do not depend on the machine either. Virtual
+# threads of ranks are different: their seconds are processor seconds of the machine, divided by a simulated schedule.
 OF_VIRTUAL_TIME = {"virtual", "seconds", "whole_s", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind",
                    "workers"}
 IDENTITY = ("CPUVendor", "CPUFamilyNumber", "CPUModelNumber", "CPUStepping")
@@ -80,7 +81,8 @@ def depends_on_machine(row, expression):
     roots = {name for name in expression.roots if re.search(rf"(?<![\w.]){name}\b", rest)} - FACTS
     if "environment" not in row:
         roots -= FACTS_ELSEWHERE
-    return bool(roots - OF_VIRTUAL_TIME if row.get("executor") == "virtual" else roots)
+    has_costs_of_model = row.get("executor") == "virtual" and not row.get("ranks")
+    return bool(roots - OF_VIRTUAL_TIME if has_costs_of_model else roots)
 
 
 def dirty_programs(row):

@@ -179,5 +179,37 @@ TEST_F(Learners, FindCellsByTheirVertices) {
   }
 }
 
+// The centroids of the flat cells that the vertices of a grid make may round to points of other cells.
+TEST_F(Learners, FindTheSameCellsOnAnyNumberOfThreadsFlatOnesIncluded) {
+  std::vector<LearntVertex> vertices = drawn_vertices(1000, 7);
+  const Vector step = 0.125 * (problem_.object.high - problem_.object.low);
+  for (int i = 1; i < 8; ++i)
+    for (int j = 1; j < 8; ++j)
+      for (int k = 1; k < 8; ++k)
+        vertices.push_back(
+            {problem_.object.low + Vector{i * step.x, j * step.y, k * step.z}, VertexKind::kCircumcenter});
+  for (const int threads : {1, 2, 5}) {
+    Rank rank(problem_, grid_, threads);
+    rank.learner.learn(vertices, kReceivedInsertion, nullptr);
+    std::vector<CellId> cells;
+    for (CellId c = 0; c < rank.mesh().cell_bound(); ++c)
+      if (rank.mesh().cell(c).is_alive()) cells.push_back(c);
+    std::vector<std::array<Point, 4>> searched(2 * cells.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      for (std::size_t i = 0; i < 4; ++i)
+        searched[2 * n][i] = rank.mesh().point(rank.mesh().cell(cells[n]).vertices[i]);
+      searched[2 * n + 1] = searched[2 * n];
+      searched[2 * n + 1][0] = searched[2 * n][0] + Vector{0, 1e-6, 0};
+    }
+    const auto found = rank.learner.find_cells(
+        searched.size(), [&](std::size_t i) -> const std::array<Point, 4>& { return searched[i]; });
+    ASSERT_EQ(found.size(), searched.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      EXPECT_EQ(found[2 * n], cells[n]) << threads << " threads";
+      EXPECT_EQ(found[2 * n + 1], std::nullopt) << threads << " threads";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace podm::test

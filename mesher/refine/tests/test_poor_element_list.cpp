@@ -122,6 +122,21 @@ TEST_F(PoorElements, KeepTheMemoryIntoWhichTheyGrowAgain) {
   EXPECT_LT(least, pages / 4);
 }
 
+// The list moves on through its chunks: a worker adds at one end while others take from the other one.
+TEST_F(PoorElements, UseTheMemoryOfTakenOnesAgain) {
+  constexpr std::size_t kPushed = 40000;
+  PoorElementList list(std::size_t{1} << 22);
+  const auto pages = static_cast<std::int64_t>(sizeof(Entry) * kPushed) / sysconf(_SC_PAGESIZE);
+  std::int64_t least = pages;
+  for (int round = 0; round < 40; ++round) {
+    const std::int64_t faults = page_faults();
+    for (std::size_t i = 0; i < kPushed; ++i) list.push(0, mesh_.stamp(0));
+    while (list.size() > kPushed / 4) list.take_oldest(64, mesh_);
+    least = std::min(least, page_faults() - faults);
+  }
+  EXPECT_LT(least, pages / 4);
+}
+
 TEST_F(PoorElements, GiveTheirMemoryBackAsTheyBecomeFewer) {
   constexpr std::size_t kBytes = 64 << 20, kEntries = kBytes / sizeof(Entry);
   for (std::size_t i = 0; i < kEntries; ++i) list_.push(0, 0);

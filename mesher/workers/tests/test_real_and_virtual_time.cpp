@@ -4,7 +4,10 @@
 #include <array>
 #include <atomic>
 #include <new>
+#include <random>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "podm/errors.h"
 #include "workers/real_time.h"
@@ -212,6 +215,51 @@ TEST(VirtualTime, AFailingAttemptHoldsItsLocksButForAWhile) {
 }
 
 // The construction of leaves checks over() and not reason().
+// A worker that only adds cells; a mesh would take a long time to get as many.
+struct Adding {
+  std::int64_t cells = 0;
+  std::int64_t net_cells() const { return cells; }
+};
+
+// Unreported cells are at most a fourth of what the limit leaves, and what a worker adds between two checks.
+TEST(StopControl, EndsAtTheLimitOfElementsHoweverSeldomWorkersReport) {
+  constexpr std::int64_t kMoreAtOnce = 700;
+  for (const std::int64_t limit : {1, 1000, 100'000, 30'000'000})
+    for (const std::size_t num_workers : {1, 3, 256}) {
+      StopControl stop({.max_elements = static_cast<std::uint64_t>(limit)}, {}, [](std::uint64_t) {});
+      std::vector<Adding> workers(num_workers);
+      std::vector<CellMeter> meters(num_workers);
+      std::mt19937 random(5);
+      std::int64_t cells = 0;
+      while (!stop.is_over()) {
+        const std::size_t i = random() % num_workers;
+        workers[i].cells += kMoreAtOnce;
+        cells += kMoreAtOnce;
+        meters[i].report_if_due(workers[i], num_workers, stop);
+        stop.check_limits();
+        ASSERT_LE(cells, limit + kMoreAtOnce * static_cast<std::int64_t>(num_workers + 1));
+      }
+      EXPECT_GT(cells, limit);
+      EXPECT_EQ(stop.reason(), StopReason::kElementLimit);
+    }
+}
+
+TEST(StopControl, HearsOfFewReportsWithoutALimit) {
+  constexpr std::int64_t kChecks = 100'000;
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  Adding worker{};
+  CellMeter meter;
+  std::int64_t num_reports = 0, reported = 0;
+  for (int check = 0; check < kChecks; ++check) {
+    worker.cells += 500;
+    meter.report_if_due(worker, 256, stop);
+    num_reports += stop.num_cells() != std::exchange(reported, stop.num_cells());
+  }
+  EXPECT_LE(num_reports, kChecks / 32);
+  meter.report(worker, stop);
+  EXPECT_EQ(stop.num_cells(), worker.cells);
+}
+
 TEST(StopControl, IsOverAsSoonAsAStopIsRequested) {
   std::stop_source source;
   StopControl stop({}, source.get_token(), [](std::uint64_t) {});
