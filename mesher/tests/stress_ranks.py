@@ -29,7 +29,7 @@ PHANTOMS = [("spheres", 48), ("torus", 48), ("abdomen", 96)]
 IMAGE_SUFFIXES = (".nrrd", ".nii", ".nii.gz", ".mha", ".inr", ".inr.gz")
 IN_PROCESS_RANKS, MPI_RANKS = (2, 3, 5, 8), (2, 4)
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                            "OMPI_MCA_mpi_yield_when_idle": "1"}
+                            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 TIMEOUT_S = 3600
 
 
@@ -116,6 +116,8 @@ def prove(run, folder):
     ranks = range(record["ranks"]["number"])
     logs = [f"run.log.{i}" for i in ranks]
     call([PROGRAM, "replay", run.sample.path, *(folder / log for log in logs)])
+    if len(logs) > 1:
+        call([MPI_PROGRAM, "replay", run.sample.path, folder / "run.log", "--in-process", len(logs)])
     files = {*logs, *(f"out_{i}{facets}.vtu" for i in ranks for facets in ("", "_facets")), "out.pvtu",
              "out_facets.pvtu", "run.jsonl", "report.json"}
     if left := {path.name for path in folder.iterdir()} ^ files:
@@ -181,7 +183,7 @@ def run_images(options):
         sample = Sample.of(path, options.cells)
         runs = [OnRanks(sample, f"{path.name}, {number} in process", [], ["--in-process", number])
                 for number in IN_PROCESS_RANKS]
-        runs += [OnRanks(sample, f"{path.name}, {number} of MPI", [MPIRUN, "--oversubscribe", "-n", number],
+        runs += [OnRanks(sample, f"{path.name}, {number} of MPI", [MPIRUN, "-n", number],
                          ["--threads", 1]) for number in MPI_RANKS]
         for run in runs:
             made = carry_out(run)
