@@ -1,6 +1,6 @@
-// The podm-mpi program: podm mesh on ranks. Exit codes as podm: 0 success, 1 a guarantee or limit is unmet, 2
-// bad usage or input, 3 internal error. Rank 0 reports faults that all ranks know, and all ranks end.
-// Otherwise the rank that fails reports its fault and ends the other ranks.
+// The podm-mpi program: podm mesh and podm replay on ranks. Exit codes as podm: 0 success, 1 a guarantee or
+// limit is unmet, 2 bad usage or input, 3 internal error. Rank 0 reports faults that all ranks know, and all
+// ranks end. Otherwise the rank that fails reports its fault and ends the other ranks.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -32,8 +32,16 @@ int complain(const std::exception_ptr& failure) try {
   return kInternal;
 }
 
-int run_in_process(const podm::cli::MeshCommand& mesh, podm::cli::SignalThread& signals) try {
-  return podm::cli::mesh_in_process(mesh, signals);
+int ranks_in_process(const podm::cli::Command& command) {
+  if (const auto* mesh = std::get_if<podm::cli::MeshCommand>(&command)) return mesh->ranks_in_process;
+  if (const auto* replay = std::get_if<podm::cli::ReplayCommand>(&command)) return replay->ranks_in_process;
+  return 0;
+}
+
+int run_in_process(const podm::cli::Command& command, podm::cli::SignalThread& signals) try {
+  if (const auto* replay = std::get_if<podm::cli::ReplayCommand>(&command))
+    return podm::cli::replay_in_process(*replay);
+  return podm::cli::mesh_in_process(std::get<podm::cli::MeshCommand>(command), signals);
 } catch (const podm::RefusedByAll&) {
   throw;
 } catch (...) {
@@ -42,8 +50,7 @@ int run_in_process(const podm::cli::MeshCommand& mesh, podm::cli::SignalThread& 
 
 podm::cli::Command parse(int argc, char** argv, const podm::Communication& ranks) {
   auto command = podm::cli::parse_command_line({argv + 1, argv + argc}, podm::cli::Program::kPodmMpi);
-  const auto* mesh = std::get_if<podm::cli::MeshCommand>(&command);
-  if (mesh != nullptr && mesh->ranks_in_process > 0 && ranks.size() > 1)
+  if (ranks_in_process(command) > 0 && ranks.size() > 1)
     throw podm::InputError(
         fmt::format("--in-process: MPI has started {} processes; ranks in process need one", ranks.size()));
   return command;
@@ -53,13 +60,15 @@ int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThre
   namespace cli = podm::cli;
   cli::Command command;
   podm::do_collectively([&] { command = parse(argc, argv, ranks); }, ranks);
-  const bool is_mesh = std::holds_alternative<cli::MeshCommand>(command);
-  podm::expect_agreement({{"command", is_mesh ? "mesh" : "a text to show"}}, ranks);
-  if (const auto* text = std::get_if<cli::ShowText>(&command)) return ranks.rank() == 0 ? cli::run(*text) : 0;
-  const auto& mesh = std::get<cli::MeshCommand>(command);
-  if (mesh.ranks_in_process > 0) return run_in_process(mesh, signals);
+  const auto* const text = std::get_if<cli::ShowText>(&command);
+  const auto* const replay = std::get_if<cli::ReplayCommand>(&command);
+  const char* const name = text != nullptr ? "a text to show" : replay != nullptr ? "replay" : "mesh";
+  podm::expect_agreement({{"command", name}}, ranks);
+  if (text != nullptr) return ranks.rank() == 0 ? cli::run(*text) : 0;
+  if (ranks_in_process(command) > 0) return run_in_process(command, signals);
   cli::SharedByRanks shared;
-  return cli::mesh_on_ranks(mesh, ranks, signals, shared);
+  if (replay != nullptr) return cli::replay_on_ranks(*replay, ranks, shared);
+  return cli::mesh_on_ranks(std::get<cli::MeshCommand>(command), ranks, signals, shared);
 }
 
 }  // namespace

@@ -89,6 +89,12 @@ void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, std::siz
 
 }  // namespace
 
+// No ring of cubes around the block is taken to be known, so that every ball is looked at.
+std::vector<CellId> unknown_cells(const Mesh& mesh, const CubeSet& own, const CubeSet& known,
+                                  std::size_t threads) {
+  return unknown_among({}, mesh, Zone(own, known, 0), threads);
+}
+
 // Each iteration except the first looks only at the cells that changed and at those that were unknown. In
 // every iteration except the last, some rank requests a largest ball that it lacks, and therefore a new cube.
 // The number of cubes is finite, so the iterations end.

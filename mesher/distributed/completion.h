@@ -2,6 +2,8 @@
 // other ranks' vertices after them.
 #pragma once
 
+#include <vector>
+
 #include "distributed/communication.h"
 #include "distributed/vertex_source.h"
 
@@ -12,5 +14,10 @@ namespace podm {
 /// cubes around `own`. `threads`: at least 1. Collective.
 Update complete(const Mesh& mesh, VertexSource& source, const CubeSet& own, int rings, std::size_t threads,
                 Communication& ranks);
+
+/// Returns the cells that complete() would learn vertices for: they have a vertex in `own`, or a neighbour
+/// with one, and may not be cells of the whole mesh if all vertices in `known` are known.
+std::vector<CellId> unknown_cells(const Mesh& mesh, const CubeSet& own, const CubeSet& known,
+                                  std::size_t threads);
 
 }  // namespace podm

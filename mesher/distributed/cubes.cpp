@@ -85,7 +85,7 @@ CubeRange one_longer(CubeRange range) {
 }  // namespace
 
 CubeGrid::CubeGrid(const Box& box, double side_mm)
-    : origin_(box.low), side_mm_(side_mm), per_mm_(1 / side_mm) {
+    : box_(box), origin_(box.low), side_mm_(side_mm), per_mm_(1 / side_mm) {
   const Vector extent = box.high - box.low;
   const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / side_mm)); };
   const std::array<double, 3> size{along(extent.x), along(extent.y), along(extent.z)};
@@ -131,6 +131,15 @@ std::vector<CubeId> CubeSet::cubes() const {
     if (has(cube)) cubes.push_back(cube);
   });
   return cubes;
+}
+
+std::vector<std::array<CubeId, 2>> CubeSet::runs() const {
+  std::vector<std::array<CubeId, 2>> runs;
+  for (const CubeId cube : cubes()) {
+    if (runs.empty() || runs.back()[1] + 1 != cube) runs.push_back({cube, cube});
+    runs.back()[1] = cube;
+  }
+  return runs;
 }
 
 // Grows along one axis after another. Each cube thereby grows into a box around it.

@@ -54,6 +54,8 @@ class CubeGrid {
   CubeGrid(const Box& box, double side_mm);
 
   CubeId num_cubes() const { return num_cubes_; }
+  /// Returns the box that it was made for.
+  const Box& box() const { return box_; }
   const CubePlace& size() const { return size_; }
   CubeRange all() const { return {{0, 0, 0}, size_}; }
   /// Returns the range of a cube and all cubes that share a face, an edge or a corner with it.
@@ -105,6 +107,7 @@ class CubeGrid {
     return 0;
   }
 
+  Box box_;
   Point origin_;
   double side_mm_, per_mm_;
   CubePlace size_;
@@ -147,6 +150,8 @@ class CubeSet {
   void insert_all();
   bool is_full() const;
   std::vector<CubeId> cubes() const;
+  /// Returns the first and the last cube of each run of consecutive numbers, in order.
+  std::vector<std::array<CubeId, 2>> runs() const;
   /// Returns the set with all cubes added that are within `rings` cubes of one of its cubes along each axis.
   CubeSet grown(int rings) const;
   /// Returns a component number per cube. Cubes of the set that share a face, an edge or a corner, directly

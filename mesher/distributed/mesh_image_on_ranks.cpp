@@ -132,6 +132,7 @@ class RunOnRank {
     spending_.end("extract");
     phases_.finish(result.piece.mesh, own);
     result.mesh_hash = hash_of_whole(result.piece.mesh);
+    result.cubes = std::move(refined_->cubes);
     spending_.end("measure");
     PartOfRank part{.cells = result.piece.mesh.cells.size(),
                     .boundary_facets = result.piece.mesh.facets.size(),

@@ -28,6 +28,7 @@ struct PartOfRank {
 struct MeshingOnRanks {
   MeshPiece piece;              ///< this rank's piece
   std::uint64_t mesh_hash = 0;  ///< mesh_hash() of the whole mesh, the same on all ranks
+  CubesOfRank cubes;            ///< this rank's; none if there is one rank
   /// The report on the whole mesh, the same on all ranks. Counters and store cells are sums. Phases are means
   /// over ranks, which add up to the elapsed time. "exchange" is the part of refinement that is not refining,
   /// including waiting for other ranks. The workers of all ranks are listed in the order of the ranks. Only

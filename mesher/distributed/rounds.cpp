@@ -138,6 +138,7 @@ class Rounds {
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = blocks_->ranks(),
+            .cubes = cubes_at_the_end(),
             .rounds = std::move(rounds_),
             .perturbing_rounds = std::move(perturbing_rounds_),
             .seeds = num_seeds_,
@@ -158,6 +159,14 @@ class Rounds {
     } else {
       blocks_.emplace(grid_, predicted_work(problem_, grid_, learner_.threads(), ranks_), ranks_.size());
     }
+  }
+
+  CubesOfRank cubes_at_the_end() const {
+    const Box& box = grid_.box();
+    return {.grid = {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z},
+            .side_mm = grid_.side_mm(),
+            .block = block().runs(),
+            .known = exchange_.known().runs()};
   }
 
   CubeSet block() const { return cubes_of(ranks_.rank(), blocks_->ranks()); }

@@ -22,6 +22,7 @@
 #include "distributed/communication.h"
 #include "distributed/spending.h"
 #include "distributed/vertex_source.h"
+#include "podm/operation_log.h"
 
 namespace podm {
 
@@ -41,6 +42,7 @@ struct DistributedRefinement {
   Refinement refinement;  ///< the mesh is correct in this rank's block and around it
   CubeGrid grid;
   std::vector<int> rank_of_cube;                       ///< by cube: the rank of its block
+  CubesOfRank cubes = {};                              ///< this rank's; none if there is one rank
   std::vector<RoundReport> rounds, perturbing_rounds;  ///< those of R1 to R6, and those of R7
   std::uint64_t seeds = 0;                             ///< vertices that this rank inserted before round 0
   Update last_update;

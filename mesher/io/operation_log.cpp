@@ -116,6 +116,23 @@ class Reader {
     json.at("mesh_hash").get_to(head.mesh_hash);
     if (head.rank < 0 || head.rank >= head.num_ranks)
       fail(fmt::format("rank {} of {} ranks does not exist", head.rank, head.num_ranks));
+    if (json.contains("cubes")) head.cubes = take_cubes(json["cubes"]);
+  }
+
+  CubesOfRank take_cubes(const nlohmann::ordered_json& json) const {
+    CubesOfRank cubes;
+    json.at("grid").get_to(cubes.grid);
+    json.at("side_mm").get_to(cubes.side_mm);
+    json.at("block").get_to(cubes.block);
+    json.at("known").get_to(cubes.known);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!(cubes.grid[axis] < cubes.grid[axis + 3])) fail("the grid of cubes is empty");
+    if (!(cubes.side_mm > 0)) fail(fmt::format("cubes with sides of {} mm", cubes.side_mm));
+    for (const auto* runs : {&cubes.block, &cubes.known})
+      for (std::size_t i = 0; i < runs->size(); ++i)
+        if ((*runs)[i][0] > (*runs)[i][1] || (i > 0 && (*runs)[i][0] <= (*runs)[i - 1][1]))
+          fail(fmt::format("cubes {} to {} are not in order", (*runs)[i][0], (*runs)[i][1]));
+    return cubes;
   }
 
   void take_smoothing(const nlohmann::ordered_json& json, OperationLogHead& head) const {
@@ -203,6 +220,11 @@ void OperationLogWriter::finish(const OperationLogHead& head) {
                               {"mesh_sha256", head.mesh_sha256}};
   if (!head.mesh_hash.empty())
     json["ranks"] = {{"number", head.num_ranks}, {"rank", head.rank}, {"mesh_hash", head.mesh_hash}};
+  if (head.cubes)
+    json["ranks"]["cubes"] = {{"grid", head.cubes->grid},
+                              {"side_mm", head.cubes->side_mm},
+                              {"block", head.cubes->block},
+                              {"known", head.cubes->known}};
   if (head.smoothing_mm > 0) json["smoothing_mm"] = head.smoothing_mm;
   file_->file->put(BatchSizes{});
   file_->file->write(json.dump() + "\n");

@@ -41,12 +41,13 @@ class Replay {
   bool is_of_ranks() const { return log_.head.num_ranks > 1; }
   std::string name_of(const LoggedOperation& logged) const {
     const std::string text = operation_text(logged.sequence);
-    return is_of_ranks() ? text + " of rank " + std::to_string(logged.worker >> kBitsInWorker) : text;
+    const auto rank = static_cast<std::uint32_t>(log_.head.rank) + (logged.worker >> kBitsInWorker);
+    return is_of_ranks() ? text + " of rank " + std::to_string(rank) : text;
   }
   // An insertion creates about 7 cells more than it destroys. A cavity may be filled before its cells are
   // free.
   std::size_t capacity() const {
-    return std::min<std::size_t>(16 * log_.all.operations.size() + (1 << 20), 1u << 30);
+    return std::min<std::size_t>(16 * log_.all.operations.size() + (1 << 20), kMostStoredCells);
   }
 
   void apply(const LoggedOperation& logged, const std::uint32_t* removed) {
@@ -70,6 +71,19 @@ class Replay {
       return;
     }
     CellId& start = last_cell_[logged.worker];
+    if (is_of_ranks() && logged.kind == kReceivedRemoval) {
+      check(to_remove_.size() == 1 && mesh_->point(to_remove_.front()) == p,
+            "a received removal must name the vertex at its point");
+      remove(to_remove_.front(), walk(start, p));
+      start = operation_.created().front();
+      return;
+    }
+    const std::uint32_t kind_of_vertex = logged.kind % kReceivedInsertion,
+                        kind_of_entry = logged.kind - kind_of_vertex;
+    check(kind_of_entry == 0 ||
+              (is_of_ranks() && (kind_of_entry == kReceivedInsertion || kind_of_entry == kSeed)),
+          "the kind of the entry is unknown");
+    check(kind_of_entry == 0 || to_remove_.empty(), "a received vertex or a seed removes a vertex");
     check(operation_.plan_insertion(p, walk(start, p)) == StepResult::kDone,
           "its point conflicts with no cell");
     operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
@@ -78,14 +92,20 @@ class Replay {
     });
     check(operation_.num_planned_removals() == to_remove_.size(),
           "removes a vertex that is not near its point");
-    const auto is_kind = [&](VertexKind kind) { return logged.kind == static_cast<std::uint32_t>(kind); };
+    const auto is_kind = [&](VertexKind kind) { return kind_of_vertex == static_cast<std::uint32_t>(kind); };
     check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter),
           "the kind of its vertex is unknown");
-    const auto kind = static_cast<VertexKind>(logged.kind);
+    const auto kind = static_cast<VertexKind>(kind_of_vertex);
     check(operation_.commit_insertion(p, kind, kTouching) == StepResult::kDone,
           "its point is a vertex already");
     check(vertex_of_.emplace(logged.vertex, operation_.inserted()).second, "its vertex exists already");
     start = operation_.created().front();
+  }
+
+  void remove(VertexId v, CellId with_its_point) {
+    if (operation_.plan_removal(v, with_its_point) != StepResult::kDone ||
+        operation_.commit_removals() != StepResult::kDone)
+      throw InternalError("a vertex cannot be removed");
   }
 
   // Starts from a cell of the same worker's last operation, which is near.

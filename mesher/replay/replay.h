@@ -1,5 +1,5 @@
 // Replays a linearization log, or the result of merge_logs(), on one thread: the serial run that a parallel
-// run claims to equal.
+// run claims to equal. Also the log of one of several ranks, with the vertices that it learnt.
 #pragma once
 
 #include <memory>

@@ -18,8 +18,9 @@ MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@32"
 ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # takes tens of seconds and about a GiB
+# Open MPI needs these for more ranks than processors, and as root; other implementations do not.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_mpi_yield_when_idle": "1"}
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
 def on_ranks(*ranks):
@@ -27,7 +28,7 @@ def on_ranks(*ranks):
     parts = []
     for arguments in ranks:
         parts += [":"] * bool(parts) + ["-n", 1, MPI_PROGRAM, *arguments]
-    return ["--oversubscribe", *parts]
+    return parts
 
 
 @unittest.skipUnless(MPI_PROGRAM, "MPI was not found when this was configured")
@@ -41,7 +42,7 @@ class OnRanks(PodmTestCase):
         return run_podm(*arguments, program=MPIRUN, env=ENVIRONMENT, **options)
 
     def mesh(self, number, *arguments, image=IMAGE, out=None):
-        return self.mpirun("--oversubscribe", "-n", number, MPI_PROGRAM, "mesh", image, "-o", out or self.out,
+        return self.mpirun("-n", number, MPI_PROGRAM, "mesh", image, "-o", out or self.out,
                            "--record", self.runs, *arguments)
 
     def assert_verifies(self, path, *options):
@@ -304,7 +305,7 @@ class InProcess(OnRanks):
                 process = self.assert_refused([*mesh, *arguments], *words, program=MPI_PROGRAM, env=ENVIRONMENT)
                 self.assertEqual(process.stderr.count("podm-mpi: "), 1)
                 self.assertNotIn("rank 0", process.stderr)
-        self.assert_refused(["--oversubscribe", "-n", 2, MPI_PROGRAM, *mesh, "--in-process", 2], "--in-process",
+        self.assert_refused(["-n", 2, MPI_PROGRAM, *mesh, "--in-process", 2], "--in-process",
                             "2 processes", program=MPIRUN, env=ENVIRONMENT)
 
     def test_a_signal_ends_them_with_a_valid_mesh(self):
@@ -336,6 +337,16 @@ class Logs(OnRanks):
         process = run_podm("replay", IMAGE, *logs)
         self.assert_exit(process, 0)
         self.assertEqual(process.stderr.count(self.last_record()["ranks"]["mesh_hash"]), 2)
+        if len(logs) > 1:
+            self.assert_replays_on_ranks(len(logs))
+
+    def assert_replays_on_ranks(self, number):
+        replay = [MPI_PROGRAM, "replay", IMAGE, self.log]
+        in_process = run_podm(*replay[1:], "--in-process", number, program=MPI_PROGRAM, env=ENVIRONMENT)
+        for process in in_process, self.mpirun("-n", number, *replay):
+            self.assert_exit(process, 0)
+            self.assertEqual(process.stderr.count(self.last_record()["ranks"]["mesh_hash"]), 2)
+            self.assertIn("the run equals its replay", process.stderr)
 
     def test_the_logs_of_all_ranks_replay_to_their_mesh(self):
         for number, threads, space in (1, 2, "RAS"), (2, 1, "voxel"), (4, 2, "LPS"):
@@ -373,6 +384,12 @@ class Logs(OnRanks):
                              ([one[0], other[1]], other[1], "of another run")):
             self.assert_refused(["replay", IMAGE, *logs], *words)
         self.assert_refused(["replay", "phantom:spheres@31", *one], one[0], "another image")
+        for arguments, *words in ((["on_3.log", "--in-process", 2], "rank 0 of 3"),
+                                  (["on_2.log", "--in-process", 3], "on_2.log.2", "cannot be opened"),
+                                  (["no.log", "--in-process", 2], "no.log.0", "cannot be opened"),
+                                  (["on_2.log"], "one rank cannot replay"), (["on_2.log", "--in-process", 1], "'1'")):
+            self.assert_refused(["replay", IMAGE, self.folder / arguments[0], *arguments[1:]], *words,
+                                program=MPI_PROGRAM, env=ENVIRONMENT)
 
     def test_a_mesh_that_ranks_did_not_make_differs(self):
         self.assert_exit(self.mesh(2, "--radius", 4, "--log", self.log), 0)
@@ -383,10 +400,13 @@ class Logs(OnRanks):
         process = run_podm("replay", IMAGE, *self.logs(2))
         self.assert_exit(process, 1)
         self.assertIn("does not equal its replay", process.stderr)
+        process = run_podm("replay", IMAGE, self.log, "--in-process", 2, program=MPI_PROGRAM, env=ENVIRONMENT)
+        self.assert_exit(process, 1)
+        self.assertIn("does not equal its replay", process.stderr)
 
     def test_a_disk_that_is_full_for_one_rank_leaves_no_log(self):
         mesh = [MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet", "--log", self.log]
-        process = self.mpirun("--oversubscribe", "-n", 1, *mesh, ":", "-n", 1, "sh", "-c",
+        process = self.mpirun("-n", 1, *mesh, ":", "-n", 1, "sh", "-c",
                               'ulimit -f 16; exec "$0" "$@"', *mesh)
         self.assertNotEqual(process.returncode, 0)
         self.assertIn("podm-mpi: rank 1 of 2: cannot write", process.stderr)
@@ -410,15 +430,15 @@ class Refusals(OnRanks):
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
             with self.subTest(option=option):
-                self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
+                self.assert_all_refuse(["-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
                                         *values], word, "not available on ranks")
 
     def test_ranks_of_mpi_have_no_virtual_time(self):
-        self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--executor",
+        self.assert_all_refuse(["-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--executor",
                                 "virtual"], "virtual time", "--in-process")
 
     def test_faults_that_every_rank_sees_are_printed_once(self):
-        mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]
+        mesh = ["-n", 3, MPI_PROGRAM, "mesh"]
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "out.vtu"], "out.vtu", ".pvtu")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "none" / "out.pvtu"], "none/out.pvtu")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--log", self.folder / "none" / "run.log"],
@@ -449,7 +469,7 @@ class Refusals(OnRanks):
         self.assert_exit(self.mesh(2, "--radius", 6), 0)
         mesh = ["mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet"]
         full = "ulimit -f 16"
-        self.assert_all_refuse(["--oversubscribe", "-n", 1, MPI_PROGRAM, *mesh, ":", "-n", 1, "sh", "-c",
+        self.assert_all_refuse(["-n", 1, MPI_PROGRAM, *mesh, ":", "-n", 1, "sh", "-c",
                                 f'{full}; exec "$0" "$@"', MPI_PROGRAM, *mesh], "rank 1 of 2", "cannot write", "out_1")
         self.assert_verifies(self.out)
 
@@ -475,7 +495,7 @@ class EarlyEnds(OnRanks):
         self.assertLess(self.last_record()["cells"], 60000)
 
     def start(self, number):
-        command = [MPIRUN, "--oversubscribe", "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS),
+        command = [MPIRUN, "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS),
                    "-o", self.out, "--record", self.runs]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         self.addCleanup(process.kill)

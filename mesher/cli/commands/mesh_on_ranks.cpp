@@ -48,7 +48,7 @@ class Run {
       if (!command_.surface_path.empty()) write_surfaces(result.piece, command_.surface_path, ranks_);
     }
     run.report = std::move(result.report);
-    if (log_) write_log(run, result.mesh_hash);
+    if (log_) write_log(run, result);
     run.write_s = ranks_.seconds() - start_s;
     auto& warnings = run.report.warnings;
     const auto add = [&](const std::vector<std::string>& more) {
@@ -124,15 +124,18 @@ class Run {
   }
 
   // No rank's log gets its name before all logs are on the disks.
-  void write_log(const MeshRun& run, std::uint64_t mesh_hash) {
+  void write_log(const MeshRun& run, MeshingOnRanks& result) {
+    std::optional<CubesOfRank> cubes;
+    if (ranks_.size() > 1) cubes = std::move(result.cubes);
     const OperationLogHead head{.box = run.report.virtual_box,
                                 .image_sha256 = label_image_sha256(run.image),
                                 .space = to_string(run.options.space),
                                 .mesh_sha256 = {},
-                                .mesh_hash = mesh_hash_text(mesh_hash),
+                                .mesh_hash = mesh_hash_text(result.mesh_hash),
                                 .rank = ranks_.rank(),
                                 .num_ranks = ranks_.size(),
-                                .smoothing_mm = run.options.smoothing_mm};
+                                .smoothing_mm = run.options.smoothing_mm,
+                                .cubes = std::move(cubes)};
     do_collectively([&] { log_->finish(head); }, ranks_);
     do_collectively([&] { log_->publish(); }, ranks_);
     if (ranks_.rank() == 0) remove_logs_of_more_ranks();
@@ -175,28 +178,34 @@ int mesh_on_ranks(MeshCommand command, Communication& ranks, SignalThread& signa
   return Run(std::move(command), ranks, signals, shared)();
 }
 
-int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
-  constexpr double kSecondsPerUs = 1e-6, kBytesPerGigabyte = 1e9;
+int run_in_process(const InProcessOptions& options,
+                   const std::function<int(Communication&, SharedByRanks&)>& command) {
   SharedByRanks shared;
   std::optional<RefusedByAll> refusal;
   int code = 0;
-  const auto mesh = [&](Communication& ranks) {
+  run_ranks(options, [&](Communication& ranks) {
     try {
-      const int own_code = mesh_on_ranks(command, ranks, signals, shared);
+      const int own_code = command(ranks, shared);
       if (ranks.rank() == 0) code = own_code;
     } catch (const RefusedByAll& error) {  // all ranks end in the regular way
       if (ranks.rank() == 0) refusal = error;
     }
-  };
-  run_ranks({.num_ranks = command.ranks_in_process,
-             .one_at_a_time = true,
-             .has_virtual_threads = command.meshing.team.executor == Executor::kVirtual,
-             .seed = command.meshing.team.seed,
-             .latency_s = kSecondsPerUs * command.network.latency_us,
-             .bytes_per_s = kBytesPerGigabyte * command.network.gigabytes_per_s},
-            mesh);
+  });
   if (refusal) throw RefusedByAll(*refusal);
   return code;
+}
+
+int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
+  constexpr double kSecondsPerUs = 1e-6, kBytesPerGigabyte = 1e9;
+  const InProcessOptions options{.num_ranks = command.ranks_in_process,
+                                 .one_at_a_time = true,
+                                 .has_virtual_threads = command.meshing.team.executor == Executor::kVirtual,
+                                 .seed = command.meshing.team.seed,
+                                 .latency_s = kSecondsPerUs * command.network.latency_us,
+                                 .bytes_per_s = kBytesPerGigabyte * command.network.gigabytes_per_s};
+  return run_in_process(options, [&](Communication& ranks, SharedByRanks& shared) {
+    return mesh_on_ranks(command, ranks, signals, shared);
+  });
 }
 
 }  // namespace podm::cli

@@ -37,6 +37,24 @@ void add_replay_command(CLI::App& program, ReplayCommand& command) {
       [&command](const std::string& text, const std::string&) { command.log_paths.push_back(text); }));
 }
 
+void add_replay_on_ranks_command(CLI::App& program, ReplayCommand& command) {
+  CLI::App& app =
+      add_command(program, "replay",
+                  "carry out the logged operations of a run on ranks, each rank those of its own\n"
+                  "log, and compare logs and mesh");
+  add_image_options(app, command.image);
+  require(add_one(app, "LOG", "",
+                  "the FILE of podm-mpi mesh --log FILE, with the same image and label options;\n"
+                  "rank R reads FILE.R, and there must be as many ranks as in that run",
+                  [&command](const std::string& text, const std::string&) { command.log_paths = {text}; }));
+  add_one(app, "--in-process", "N",
+          "ranks are threads of this process, one computing at a time [default: ranks are\n"
+          "those of mpirun or srun]",
+          {[&command](const std::string& text, const std::string& name) {
+            command.ranks_in_process = static_cast<int>(parse_integer(text, name, 2, kMostThreads));
+          }});
+}
+
 void add_info_command(CLI::App& program, InfoCommand& command) {
   CLI::App& app = add_command(program, "info", "print size, spacing (mm), affine and labels of an image");
   add_image_options(app, command.image);

@@ -50,6 +50,7 @@ void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
 void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
+void add_replay_on_ranks_command(CLI::App& program, ReplayCommand& command);
 void add_options_command(CLI::App& program);
 void add_convert_command(CLI::App& program, ConvertCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);

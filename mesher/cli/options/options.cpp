@@ -138,6 +138,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
       "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
   if (which == Program::kPodmMpi) mesh.meshing.team.seed = mesh.meshing.cut_seed;
   add_mesh_command(program, mesh, which);
+  if (which == Program::kPodmMpi) add_replay_on_ranks_command(program, replay);
   if (which == Program::kPodm) {
     add_replay_command(program, replay);
     add_convert_command(program, convert);

@@ -140,10 +140,11 @@ struct MeshCommand {
   }
 };
 
-/// podm replay
+/// podm replay and podm-mpi replay
 struct ReplayCommand {
   ImageArguments image;
-  std::vector<std::string> log_paths;  ///< at least one
+  std::vector<std::string> log_paths;  ///< at least one; of podm-mpi one, that of podm-mpi mesh --log
+  int ranks_in_process = 0;            ///< podm-mpi's, and none of MPI's; 0: MPI's
 };
 
 /// podm convert
@@ -230,7 +231,7 @@ struct ShowText {
 using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand,
                              ViewCommand, ServeCommand, ShowText>;
 
-/// podm-mpi has the command mesh alone.
+/// podm-mpi has the commands mesh and replay.
 enum class Program { kPodm, kPodmMpi };
 
 /// Parses the arguments after the program's name. Throws InputError that names the option and the fault.

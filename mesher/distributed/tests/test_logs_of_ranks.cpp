@@ -1,13 +1,15 @@
-// The logs of all ranks, merged and replayed on one thread, make the mesh that the ranks made together.
-// Modified logs do not.
+// The logs of all ranks, merged and replayed on one thread, make the mesh that the ranks made together. So
+// do the logs of the ranks, each replayed by a rank. Modified logs do not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <stop_token>
 
+#include "distributed/collective_errors.h"
 #include "distributed/in_process_ranks.h"
 #include "distributed/mesh_image_on_ranks.h"
+#include "distributed/replay_on_ranks.h"
 #include "podm/mesh_io.h"
 #include "replay/merge_logs.h"
 #include "tests/images.h"
@@ -60,7 +62,8 @@ LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
                 .mesh_sha256 = {},
                 .mesh_hash = mesh_hash_text(meshing.mesh_hash),
                 .rank = ranks.rank(),
-                .num_ranks = ranks.size()});
+                .num_ranks = ranks.size(),
+                .cubes = ranks.size() > 1 ? std::optional(meshing.cubes) : std::nullopt});
     log.publish();
     result.logs[static_cast<std::size_t>(ranks.rank())] = {path, read_operation_log(path)};
     if (ranks.rank() == 0) result.stop_reason = meshing.report.stop_reason;
@@ -77,11 +80,32 @@ std::string verdict(const std::vector<LogOfRank>& logs, const LoggedCase& of) tr
   return error.what();
 }
 
+// Returns the same, for a replay on as many ranks as there are logs.
+std::string verdict_on_ranks(const std::vector<LogOfRank>& logs, const LoggedCase& of) {
+  std::string verdict;
+  SharedValue<Isosurface> isosurface;
+  run_ranks({.num_ranks = static_cast<int>(logs.size()), .one_at_a_time = true}, [&](Communication& ranks) {
+    const OperationLog& own = logs[static_cast<std::size_t>(ranks.rank())].log;
+    std::string text;
+    try {
+      const ReplayOnRanks replayed = replay_on_ranks(of.image, own, of.space, 1, ranks, isosurface);
+      text = mesh_hash_text(replayed.mesh_hash) == own.head.mesh_hash ? "equal" : "differs";
+    } catch (const RefusedByAll& error) {
+      text = error.what();
+    }
+    if (ranks.rank() == 0) verdict = text;
+  });
+  return verdict;
+}
+
 class LogsOfRanks : public testing::TestWithParam<LoggedCase> {};
 
 TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   const LoggedRun logged = run(GetParam());
   EXPECT_EQ(verdict(logged.logs, GetParam()), "equal");
+  if (logged.logs.size() > 1) {
+    EXPECT_EQ(verdict_on_ranks(logged.logs, GetParam()), "equal");
+  }
   EXPECT_EQ(logged.stop_reason,
             GetParam().most_cells > 0 ? StopReason::kElementLimit : StopReason::kComplete);
   std::uint64_t num_received = 0;
@@ -97,6 +121,7 @@ TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
     const LoggedRun logged = run(of, stopped_rank);
     EXPECT_EQ(logged.stop_reason, StopReason::kCancelled);
     EXPECT_EQ(verdict(logged.logs, of), "equal") << "rank " << stopped_rank;
+    EXPECT_EQ(verdict_on_ranks(logged.logs, of), "equal") << "rank " << stopped_rank;
   }
 }
 
@@ -143,6 +168,11 @@ class SpoiltLogs : public testing::Test {
 
   OperationBatch& log(std::size_t rank) { return logs_[rank].log.all; }
   std::string verdict() const { return test::verdict(logs_, of()); }
+  std::string verdict_on_ranks() const { return test::verdict_on_ranks(logs_, of()); }
+  void expect_refused_on_ranks(const std::string& fault) const {
+    const std::string refusal = verdict_on_ranks();
+    EXPECT_NE(refusal.find(fault), std::string::npos) << refusal;
+  }
   // Returns some entries of this kind with isosurface points: the mesh contains all of them, because they are
   // never removed.
   std::vector<std::size_t> some_entries(std::size_t rank, std::uint32_t added_to_kind) {
@@ -177,6 +207,7 @@ TEST_F(SpoiltLogs, AreRefusedWithAReceivedVertexThatIsElsewhere) {
       move(rank, entry);
       EXPECT_EQ(verdict(), logs_[rank].path + ": " + operation_text(log(rank).operations[entry].sequence) +
                                ": receives a vertex that no rank has inserted");
+      expect_refused_on_ranks("learns of it, although it does not exist");
       ++num_received;
     }
   }
@@ -192,11 +223,13 @@ TEST_F(SpoiltLogs, AreRefusedWithASeedThatARankMakesLaterOrOfAnotherKind) {
     LoggedOperation& last = *std::find_if(operations.rbegin(), operations.rend(), is_seed);
     last.sequence += std::uint64_t{1} << kBitsInStep;
     EXPECT_NE(verdict().find("a seed after the first step"), std::string::npos) << verdict();
+    expect_refused_on_ranks("seeds belong to the first step");
   }
   logs_ = sound();
   for (LoggedOperation& entry : log(1).operations)
     if (is_seed(entry)) entry.kind = kSeed + static_cast<std::uint32_t>(VertexKind::kIsosurface);
   EXPECT_NE(verdict().find("a seed of another kind than another rank's"), std::string::npos) << verdict();
+  expect_refused_on_ranks("as a seed of another kind");
 }
 
 TEST_F(SpoiltLogs, DoNotPassWithoutAnOperation) {
@@ -205,6 +238,7 @@ TEST_F(SpoiltLogs, DoNotPassWithoutAnOperation) {
       logs_ = sound();
       leave_out(rank, entry);
       EXPECT_NE(verdict(), "equal") << "rank " << rank << ", entry " << entry;
+      EXPECT_NE(verdict_on_ranks(), "equal") << "rank " << rank << ", entry " << entry;
     }
   }
 }
@@ -215,6 +249,7 @@ TEST_F(SpoiltLogs, DoNotPassWithAnOperationElsewhere) {
       logs_ = sound();
       move(rank, entry);
       EXPECT_NE(verdict(), "equal") << "rank " << rank << ", entry " << entry;
+      EXPECT_NE(verdict_on_ranks(), "equal") << "rank " << rank << ", entry " << entry;
     }
   }
 }
@@ -254,14 +289,42 @@ TEST_F(SpoiltLogs, AreRefusedWithTwoStepsSwapped) {
     EXPECT_NE(fault.find("0.log: operation "), std::string::npos) << fault;
     EXPECT_NE(fault.find(" of step 1: receives a vertex that no rank has inserted"), std::string::npos)
         << fault;
+    EXPECT_NE(verdict_on_ranks(), "equal") << "steps 1 and " << step;
     ++num_swapped;
   }
   EXPECT_GT(num_swapped, 0);
 }
 
+// A piece that lacks cubes, or has too many, would miss cells or count them twice.
+TEST_F(SpoiltLogs, AreRefusedIfBlocksDoNotTileSpaceOrTooMuchIsKnown) {
+  const auto cubes = [this](std::size_t rank) -> CubesOfRank& { return *logs_[rank].log.head.cubes; };
+  const auto with = [](std::vector<CubesOfRank::Run> runs, std::uint32_t cube) {
+    runs.push_back({cube, cube});
+    return runs;
+  };
+  const std::uint32_t cube = cubes(1).block.front()[0];
+  ++cubes(1).block.front()[0];
+  expect_refused_on_ranks("is in no rank's block");
+  logs_ = sound();
+  cubes(2).block = with(cubes(2).block, cube);
+  expect_refused_on_ranks("is in the blocks of ranks");
+  logs_ = sound();
+  cubes(0).known = {{0, cubes(0).block.back()[1]}};
+  for (std::size_t rank = 1; rank < 3; ++rank)
+    for (const auto& run : cubes(rank).block)
+      if (run[1] > cubes(0).known.front()[1]) cubes(0).known.push_back(run);
+  expect_refused_on_ranks("which knows its cube, lacks it");
+  logs_ = sound();
+  cubes(0).known = cubes(0).block;
+  expect_refused_on_ranks("may not be cells of the whole mesh");
+  logs_ = sound();
+  logs_[1].log.head.cubes.reset();
+  EXPECT_NE(verdict_on_ranks(), "equal");
+}
+
 TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
   std::mt19937 random(3);
-  int num_equal = 0, num_equal_seeds = 0;
+  int num_equal = 0, num_equal_seeds = 0, num_equal_on_ranks = 0;
   for (int round = 0; round < 60; ++round) {
     logs_ = sound();
     OperationBatch& all = log(random() % 3);
@@ -281,8 +344,10 @@ TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
         all.removed[random() % all.removed.size()] = static_cast<std::uint32_t>(random() % 1000);
     }
     (is_seed ? num_equal_seeds : num_equal) += verdict() == "equal";
+    num_equal_on_ranks += !is_seed && verdict_on_ranks() == "equal";
   }
-  EXPECT_LT(num_equal, 6);         // a vertex may by chance have the number of another vertex in a log
+  EXPECT_LT(num_equal, 6);  // a vertex may by chance have the number of another vertex in a log
+  EXPECT_LT(num_equal_on_ranks, 6);
   EXPECT_LT(num_equal_seeds, 20);  // a seed outside the object is in no cell of the mesh
 }
 

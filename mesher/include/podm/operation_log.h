@@ -15,6 +15,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,15 @@ struct OperationBatch {
   std::vector<std::uint32_t> removed;  ///< vertex ids, num_removed per operation
 };
 
+/// The part of space of one of several ranks, in cubes of a grid (distributed/cubes.h).
+struct CubesOfRank {
+  using Run = std::array<std::uint32_t, 2>;  ///< numbers of the first and the last of consecutive cubes
+  std::array<double, 6> grid{};              ///< low and high corner of the covered box, mm, working frame
+  double side_mm = 0;                        ///< side of a cube
+  std::vector<Run> block;  ///< cubes of this rank: a cell belongs to the rank that has its least vertex
+  std::vector<Run> known;  ///< cubes of which the rank has all vertices at the end
+};
+
 /// The description of the run in a log.
 struct OperationLogHead {
   std::array<double, 6> box{};  ///< low and high corner of the virtual box, mm, working frame
@@ -63,6 +73,7 @@ struct OperationLogHead {
   std::string mesh_hash = {};   ///< mesh_hash_text() of the whole mesh, if ranks made it; otherwise empty
   int rank = 0, num_ranks = 1;  ///< rank of this log, and number of ranks
   double smoothing_mm = 0;      ///< width by which interfaces were smoothed
+  std::optional<CubesOfRank> cubes = {};  ///< set if there are several ranks
 };
 
 struct OperationLog {
