@@ -65,8 +65,15 @@ class MpiCommunication final : public Communication {
   int size() const override { return size_; }
   std::vector<Bytes> all_to_all(std::vector<Bytes> messages) override;
   std::vector<Bytes> all_gather(Bytes message) override;
-  void sum(std::span<std::uint64_t> values) override { reduce(values, MPI_SUM); }
-  void maximum(std::span<std::uint64_t> values) override { reduce(values, MPI_MAX); }
+  void sum(std::span<std::uint64_t> values) override { reduce(values, MPI_UINT64_T, MPI_SUM); }
+  // MPICH 4.0 compares unsigned 64-bit values as signed ones. With its first bit changed a value has its
+  // place in both orders.
+  void maximum(std::span<std::uint64_t> values) override {
+    constexpr std::uint64_t kFirstBit = std::uint64_t{1} << 63;
+    for (std::uint64_t& value : values) value ^= kFirstBit;
+    reduce(values, MPI_INT64_T, MPI_MAX);
+    for (std::uint64_t& value : values) value ^= kFirstBit;
+  }
   void barrier() override {
     const CollectiveClock clock(in_collectives_);
     check(MPI_Barrier(all_), "MPI_Barrier");
@@ -82,7 +89,7 @@ class MpiCommunication final : public Communication {
  private:
   void start_receiving(Bytes& message, int from, std::vector<MPI_Request>& requests);
   void start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests);
-  void reduce(std::span<std::uint64_t> values, MPI_Op operation);
+  void reduce(std::span<std::uint64_t> values, MPI_Datatype type, MPI_Op operation);
   std::size_t num_ranks() const { return static_cast<std::size_t>(size_); }
   void note_sent(const Bytes& message) {
     sent_.messages_sent += !message.empty();
@@ -174,13 +181,12 @@ std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
   return all;
 }
 
-void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Op operation) {
+void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Datatype type, MPI_Op operation) {
   const CollectiveClock clock(in_collectives_);
   const std::size_t most_values = most_bytes_ / sizeof(std::uint64_t);
   for (std::size_t begin = 0; begin < values.size(); begin += most_values) {
     const auto piece = values.subspan(begin, std::min(most_values, values.size() - begin));
-    check(MPI_Allreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), MPI_UINT64_T, operation,
-                        all_),
+    check(MPI_Allreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), type, operation, all_),
           "MPI_Allreduce");
   }
 }
