@@ -18,9 +18,11 @@ MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@32"
 ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # takes tens of seconds and about a GiB
-# Open MPI needs these for more ranks than processors, and as root; other implementations do not.
+# Open MPI needs these for more ranks than processors, and as root. MPICH must not keep messages in files of shared
+# memory, because tests limit the size of files.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
+               "UCX_TLS": "self,tcp"}
 
 
 def on_ranks(*ranks):
@@ -29,6 +31,14 @@ def on_ranks(*ranks):
     for arguments in ranks:
         parts += [":"] * bool(parts) + ["-n", 1, MPI_PROGRAM, *arguments]
     return parts
+
+
+def ranks_below(process):
+    """Returns the processes of podm-mpi that a process has started, itself or through others."""
+    children = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    program = os.path.realpath(MPI_PROGRAM)
+    ranks = [int(child) for child in children if os.path.realpath(f"/proc/{child}/exe") == program]
+    return ranks + [rank for child in children for rank in ranks_below(child)]
 
 
 @unittest.skipUnless(MPI_PROGRAM, "MPI was not found when this was configured")
@@ -502,9 +512,9 @@ class EarlyEnds(OnRanks):
         for line in process.stderr:
             share = re.match(r"refine +(\d+) %", line)
             if share and int(share[1]) >= 10:  # all ranks refine
-                children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-                self.assertEqual(len(children), number)
-                return process, [int(child) for child in children]
+                ranks = ranks_below(process.pid)
+                self.assertEqual(len(ranks), number)
+                return process, ranks
         self.fail(f"no refinement: exit {process.wait()}")
 
     def wait_for_end(self, process):
