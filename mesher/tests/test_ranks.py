@@ -18,11 +18,11 @@ MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@32"
 ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # takes tens of seconds and about a GiB
-# Open MPI needs these for more ranks than processors, and as root. MPICH must not keep messages in files of shared
-# memory, because tests limit the size of files.
+# Open MPI needs these for more ranks than processors, and as root; other implementations do not.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
-               "UCX_TLS": "self,tcp"}
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+# Limits the size of files. MPICH must then not keep messages in files of shared memory.
+FULL_DISK = "ulimit -f 16; export UCX_TLS=self,tcp"
 
 
 def on_ranks(*ranks):
@@ -417,7 +417,7 @@ class Logs(OnRanks):
     def test_a_disk_that_is_full_for_one_rank_leaves_no_log(self):
         mesh = [MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet", "--log", self.log]
         process = self.mpirun("-n", 1, *mesh, ":", "-n", 1, "sh", "-c",
-                              'ulimit -f 16; exec "$0" "$@"', *mesh)
+                              f'{FULL_DISK}; exec "$0" "$@"', *mesh)
         self.assertNotEqual(process.returncode, 0)
         self.assertIn("podm-mpi: rank 1 of 2: cannot write", process.stderr)
         self.assertIn("run.log.1", process.stderr)
@@ -478,9 +478,9 @@ class Refusals(OnRanks):
         """All ranks report the reason and end; the earlier files stay."""
         self.assert_exit(self.mesh(2, "--radius", 6), 0)
         mesh = ["mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet"]
-        full = "ulimit -f 16"
         self.assert_all_refuse(["-n", 1, MPI_PROGRAM, *mesh, ":", "-n", 1, "sh", "-c",
-                                f'{full}; exec "$0" "$@"', MPI_PROGRAM, *mesh], "rank 1 of 2", "cannot write", "out_1")
+                                f'{FULL_DISK}; exec "$0" "$@"', MPI_PROGRAM, *mesh],
+                               "rank 1 of 2", "cannot write", "out_1")
         self.assert_verifies(self.out)
 
 
