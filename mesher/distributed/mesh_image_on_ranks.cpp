@@ -104,6 +104,24 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"image", "SHA-256 " + hash_of(image)}};
 }
 
+// Returns the facts that a run shares with the checkpoint that it resumes. Limits and the cuts between blocks
+// may differ.
+std::vector<Fact> facts_of_checkpoints(const LabelImage& image, const MeshingOptions& options) {
+  std::vector<Fact> facts = facts_of(image, options);
+  std::erase_if(facts,
+                [](const Fact& fact) { return fact.first == "seed" || fact.first.starts_with("limit of "); });
+  facts.insert(facts.begin(), {"program version", PODM_VERSION});
+  return facts;
+}
+
+void check_checkpoints(const CheckpointOptions& checkpoints, const MeshingOptions& options, int num_ranks) {
+  if (checkpoints.folder.empty()) return;
+  refuse(options.sizes.target_elements > 0, "a checkpoint of a run with a target number of elements");
+  if (num_ranks == 1 && !checkpoints.is_resumed)
+    throw InputError(
+        "checkpoints are written between rounds, and one rank has a single round: use more ranks");
+}
+
 MeshingOptions with_algorithm(MeshingOptions options) {
   if (options.algorithm == Algorithm::kAuto) options.algorithm = Algorithm::kPodm;
   return options;
@@ -120,6 +138,12 @@ class RunOnRank {
         isosurface_(isosurface),
         phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size(),
                 [&ranks] { return ranks.seconds(); }) {}
+
+  /// Collective. To be called before the run.
+  void open(const CheckpointOptions& options) {
+    if (!options.folder.empty())
+      checkpoints_.emplace(options, facts_of_checkpoints(image_, options_), ranks_);
+  }
 
   MeshingOnRanks operator()() {
     MeshingOnRanks result;
@@ -198,13 +222,14 @@ class RunOnRank {
   void refine_with(const SizeOptions& sizes, MeshingReport& own) {
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       spending_.end(options_.sizes.target_elements > 0 ? "calibrate" : "transform");
-      if (ranks_.size() == 1) return refine_alone(problem, team, stop);
+      if (ranks_.size() == 1 && !checkpoints_) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();
       refined_.emplace(podm_distributed(problem, team,
                                         {.initial_ratio = options_.leaves.initial_ratio,
                                          .cut_seed = options_.cut_seed,
                                          .algorithm = options_.algorithm,
-                                         .leaf_size_mm = options_.leaves.size_mm},
+                                         .leaf_size_mm = options_.leaves.size_mm,
+                                         .checkpoints = checkpoints_ ? &*checkpoints_ : nullptr},
                                         ranks_, stop));
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
@@ -260,6 +285,7 @@ class RunOnRank {
   SharedIsosurface* const isosurface_;
   PhasesOfRun phases_;
   Spending spending_{ranks_};
+  std::optional<Checkpoints> checkpoints_;
   std::optional<DistributedRefinement> refined_;
 };
 
@@ -267,16 +293,19 @@ class RunOnRank {
 
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress,
-                                   std::stop_token stop, SharedIsosurface* isosurface) {
+                                   std::stop_token stop, SharedIsosurface* isosurface,
+                                   const CheckpointOptions& checkpoints) {
   std::optional<RunOnRank> run;
   do_collectively(
       [&] {
         check_options(image, options);
         check_options_on_ranks(options);
+        check_checkpoints(checkpoints, options, ranks.size());
         run.emplace(image, options, ranks, progress, std::move(stop), isosurface);
       },
       ranks);
   if (ranks.size() > 1) expect_agreement(facts_of(image, options), ranks);
+  run->open(checkpoints);
   return (*run)();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "distributed/checkpoints.h"
 #include "distributed/communication.h"
 #include "distributed/rounds.h"
 #include "distributed/shared_value.h"
@@ -21,7 +22,7 @@ struct PartOfRank {
   SpentByPhase spent;  ///< by the phases of rounds.h, and others: "transform", "calibrate" if
                        ///< there is a target, "extract" and "measure"
   std::vector<RoundReport> rounds, perturbing_rounds;  ///< of R1 to R6, and of R7; empty on one rank
-  std::uint64_t seeds = 0;                             ///< vertices that it inserted before round 0
+  std::uint64_t seeds = 0;                             ///< as in DistributedRefinement
   Update last_update;                                  ///< the update that completed its block
 };
 
@@ -50,9 +51,11 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// (distributed/collective_errors.h) if images or options differ between ranks, or if options are bad or not
 /// supported on ranks. If memory runs out between rounds, that rank throws std::bad_alloc, and the caller
 /// must end the other ranks. Ranks of one process may share the isosurface if they have the same image;
-/// otherwise each rank makes its own.
+/// otherwise each rank makes its own. Checkpoints need two ranks or more, and a radius; one rank may resume
+/// those of more. Throws RefusedByAll on faults of their files.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
-                                   std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr);
+                                   std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr,
+                                   const CheckpointOptions& checkpoints = {});
 
 }  // namespace podm

@@ -105,6 +105,7 @@ class Rounds {
       : problem_(problem),
         team_(team),
         cut_seed_(options.cut_seed),
+        checkpoints_(options.checkpoints),
         ranks_(ranks),
         stop_(stop),
         levels_(two_levels(problem, options.initial_ratio)),
@@ -112,7 +113,7 @@ class Rounds {
         grid_(grid_around(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size()))),
         learner_(construction_, grid_),
         exchange_(ranks, learner_, grid_) {
-    if (options.algorithm == Algorithm::kPodm) return;
+    if (options.algorithm == Algorithm::kPodm || is_resumed()) return;
     const LeafOptions of_leaves{.initial_ratio = options.initial_ratio, .size_mm = options.leaf_size_mm};
     leaves_.emplace(construction_, levels_, of_leaves, options.algorithm, ranks);
   }
@@ -125,7 +126,7 @@ class Rounds {
     if (problem_.dihedral_bounds) construction_.timed(kPerturb, [] {});
     construction_.timed("initial", [&] {
       divide_space();
-      seed();
+      is_resumed() ? restore() : seed();
     });
     spending_.end("initial");
     work_in_rounds(Task::kRefine, rounds_);
@@ -147,6 +148,8 @@ class Rounds {
   }
 
  private:
+  bool is_resumed() const { return checkpoints_ != nullptr && checkpoints_->is_resumed(); }
+
   bool is_over_anywhere() {
     std::array<std::uint64_t, 1> num_over{stop_.is_over() ? 1u : 0u};
     ranks_.sum(num_over);
@@ -195,6 +198,59 @@ class Rounds {
     num_seeds_ = seeding.num_inserted();
     exchange_.begin(blocks_->ranks(), seeding.known());
     exchange_.check();
+  }
+
+  // Inserts the vertices of a checkpoint in the block, one vertex of each cube elsewhere, and then those that
+  // the cells with a vertex in the block need. The ranks of the checkpoint may have had other blocks.
+  void restore() {
+    std::vector<std::vector<LearntVertex>> of_rank(static_cast<std::size_t>(ranks_.size()));
+    for (const LearntVertex& vertex : checkpoints_->read())
+      of_rank.at(static_cast<std::size_t>(blocks_->of(grid_.cube_at(vertex.point)))).push_back(vertex);
+    std::vector<LearntVertex> own = exchanged(of_rank);
+    of_rank = {};
+    std::vector<std::vector<LearntVertex>> sparse(static_cast<std::size_t>(ranks_.size()), one_per_cube(own));
+    sparse[static_cast<std::size_t>(ranks_.rank())].clear();
+    const std::vector<LearntVertex> elsewhere = exchanged(sparse);
+    own.insert(own.end(), elsewhere.begin(), elsewhere.end());
+    learner_.learn(own, kReceivedInsertion, nullptr);
+    exchange_.begin(blocks_->ranks(), block());
+    const Update more =
+        complete(construction_.mesh(), exchange_, block(), kSeededRings, learner_.threads(), ranks_);
+    num_seeds_ = own.size() + more.inserted;
+    exchange_.check();
+  }
+
+  std::vector<LearntVertex> one_per_cube(const std::vector<LearntVertex>& vertices) const {
+    CubeSet seen(grid_);
+    std::vector<LearntVertex> some;
+    for (const LearntVertex& vertex : vertices) {
+      if (seen.has(vertex.point)) continue;
+      seen.insert(grid_.cube_at(vertex.point));
+      some.push_back(vertex);
+    }
+    return some;
+  }
+
+  // Writes a checkpoint if one is due, and before work that would be lost: the end of a run that is over, and
+  // R7.
+  void save() {
+    const bool is_last = is_over_ || (rounds_.back().deferred == 0 && problem_.dihedral_bounds);
+    if (checkpoints_ == nullptr || !(is_last || checkpoints_->is_due())) return;
+    checkpoints_->write(written_here(), rounds_.size());
+  }
+
+  // Returns the vertices in the cubes that this rank wrote last.
+  std::vector<LearntVertex> written_here() const {
+    const CubeSet cubes = cubes_of(ranks_.rank(), exchange_.writers());
+    const Mesh& mesh = construction_.mesh();
+    return parallel_collect<LearntVertex>(mesh.vertex_bound(), learner_.threads(),
+                                          [&](std::size_t begin, std::size_t end, auto& found) {
+                                            for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
+                                              const Vertex& vertex = mesh.vertex(v);
+                                              if (is_shared(vertex.kind) && cubes.has(vertex.point))
+                                                found.push_back({vertex.point, vertex.kind});
+                                            }
+                                          });
   }
 
   // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex. The
@@ -247,6 +303,7 @@ class Rounds {
         if (zone_of_[cube] != kNoRank) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
       rounds.push_back(report);
+      if (task == Task::kRefine) save();
     } while (rounds.back().deferred > 0 && !is_over_);
   }
 
@@ -595,6 +652,7 @@ class Rounds {
   const Problem& problem_;
   const Team& team_;
   const std::uint64_t cut_seed_;
+  Checkpoints* const checkpoints_;  // null: none
   Communication& ranks_;
   StopControl& stop_;
   Spending spending_{ranks_};

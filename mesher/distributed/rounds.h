@@ -14,11 +14,15 @@
 //   5  R7 moves vertices in rounds with the same zones, if it is requested (refine/perturbation.h).
 //   6  At the end each rank learns what other ranks changed in its block and around it.
 //
+// Between rounds of R1 to R6 the ranks may write checkpoints (checkpoints.h). A resumed run has the vertices
+// of a checkpoint in place of the seeds, and applies PODM to all cells in its round 0.
+//
 // After each of these exchanges the ranks compare what they have where they overlap (overlap.h).
 #pragma once
 
 #include "algorithms/podm.h"
 #include "distributed/blocks.h"
+#include "distributed/checkpoints.h"
 #include "distributed/communication.h"
 #include "distributed/spending.h"
 #include "distributed/vertex_source.h"
@@ -44,7 +48,7 @@ struct DistributedRefinement {
   std::vector<int> rank_of_cube;                       ///< by cube: the rank of its block
   CubesOfRank cubes = {};                              ///< this rank's; none if there is one rank
   std::vector<RoundReport> rounds, perturbing_rounds;  ///< those of R1 to R6, and those of R7
-  std::uint64_t seeds = 0;                             ///< vertices that this rank inserted before round 0
+  std::uint64_t seeds = 0;  ///< vertices that this rank inserted before round 0, also those of a checkpoint
   Update last_update;
   /// This rank's time per phase: "initial", blocks and seeds; "refine", round 0; "later", refining in later
   /// rounds; "perturb", R7 in all rounds; "exchange", everything else.
@@ -56,6 +60,7 @@ struct DistributedOptions {
   std::uint64_t cut_seed = 0;  ///< draws the cuts between blocks; 0: cuts follow the predicted work
   Algorithm algorithm = Algorithm::kPodm;  ///< kPodm, or kPdr or kPdrPodm: leaves first, in round 0
   double leaf_size_mm = 0;                 ///< as in LeafOptions
+  Checkpoints* checkpoints = nullptr;      ///< none: no checkpoint is written or resumed
 };
 
 /// Refines the mesh on all ranks. Collective. All ranks have the same problem and options, and each has its

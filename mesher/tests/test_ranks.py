@@ -484,6 +484,85 @@ class Refusals(OnRanks):
         self.assert_verifies(self.out)
 
 
+class Resumed(OnRanks):
+    def setUp(self):
+        super().setUp()
+        self.saved = self.folder / "saved"
+        self.image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", self.image), 0)
+
+    def saving(self, number, *arguments, resume=False):
+        return self.mesh(number, "--radius", 3, "--checkpoint", self.saved, *arguments, *["--resume"] * resume,
+                         image=self.image)
+
+    def begin(self, *arguments):
+        process = self.saving(2, "--max-elements", 6000, *arguments)
+        self.assert_exit(process, 1)
+        self.assertIn("checkpoint.txt", {path.name for path in self.saved.iterdir()})
+
+    def assert_refuses(self, process, *words):
+        self.assert_exit(process, 2)
+        for word in words:
+            self.assertIn(word, process.stderr)
+
+    def test_another_number_of_ranks_ends_the_mesh(self):
+        self.begin()
+        for number in few((3, 1, 2), 1):
+            with self.subTest(ranks=number):
+                self.assert_exit(self.saving(number, resume=True), 0)
+                self.assertEqual(self.last_record()["stop_reason"], "complete")
+                self.assert_verifies(self.out, "--radius", 3, "--image", self.image)
+                self.begin()
+
+    @slow
+    def test_leaves_and_r7_resume(self):
+        for options in ["--algorithm", "pdr", "--threads", 2, "--oversubscribe"], ["--min-dihedral", 8]:
+            self.begin(*options)
+            self.assert_exit(self.saving(3, *options, "--checkpoint-seconds", 1e-6, resume=True), 0)
+            self.assert_verifies(self.out, "--radius", 3, "--image", self.image)
+
+    def test_a_run_that_is_killed_resumes(self):
+        command = [MPI_PROGRAM, "mesh", self.image, "--radius", 1.2, "--in-process", 3, "-o", self.out, "--checkpoint",
+                   self.saved, "--checkpoint-seconds", 1e-6, "--quiet"]
+        with subprocess.Popen([str(word) for word in command], env=ENVIRONMENT) as process:
+            for _ in range(600):
+                if (self.saved / "checkpoint.txt").exists():
+                    break
+                time.sleep(0.1)
+            process.kill()
+        self.assertFalse(self.out.exists())
+        self.assert_exit(self.mesh_of("--radius", 1.2, "--in-process", 4, "--checkpoint", self.saved, "--resume"), 0)
+        self.assert_verifies(self.out, "--radius", 1.2, "--image", self.image)
+
+    def mesh_of(self, *arguments):
+        return run_podm("mesh", self.image, "-o", self.out, "--record", self.runs, *arguments, program=MPI_PROGRAM,
+                        env=ENVIRONMENT)
+
+    def test_what_is_refused(self):
+        self.assert_refuses(self.saving(2, resume=True), "saved: the folder has no whole checkpoint")
+        self.assert_refuses(self.saving(1), "use more ranks")
+        self.begin()
+        self.assert_refuses(self.saving(2, "--smooth", 1, resume=True),
+                            "checkpoint.txt: the checkpoint does not have the smoothing of this run: 0 mm, not 1 mm")
+        self.assert_refuses(self.mesh(2, "--radius", 3, "--checkpoint", self.saved, "--resume"),
+                            "checkpoint.txt: the checkpoint does not have the")
+        self.assert_refuses(self.saving(2, "--log", self.folder / "run.log", resume=True), "--resume", "--log")
+        self.assert_refuses(self.mesh(2, "--resume"), "--resume", "--checkpoint")
+        piece = next(self.saved.glob("vertices_*_1.bin"))
+        piece.write_bytes(piece.read_bytes()[:-1])
+        self.assert_refuses(self.saving(3, resume=True), piece.name, "bytes, not")
+
+    def test_a_full_disk_leaves_the_last_checkpoint(self):
+        self.begin()
+        before = {path: path.read_bytes() for path in self.saved.iterdir()}
+        mesh = [MPI_PROGRAM, "mesh", self.image, "-o", self.out, "--radius", 3, "--quiet", "--checkpoint", self.saved,
+                "--checkpoint-seconds", 1e-6]
+        process = self.mpirun("-n", 1, *mesh, ":", "-n", 1, "sh", "-c", f'{FULL_DISK}; exec "$0" "$@"', *mesh)
+        self.assert_refuses(process, "rank 1 of 2: cannot write", "vertices_")
+        self.assertEqual({path: path.read_bytes() for path in self.saved.iterdir()}, before)
+        self.assert_exit(self.saving(3, resume=True), 0)
+
+
 class EarlyEnds(OnRanks):
     def assert_ended_early(self, process, reason):
         self.assert_exit(process, 1)

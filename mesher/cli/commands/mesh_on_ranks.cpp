@@ -85,6 +85,9 @@ class Run {
                       {"output", command_.mesh_path},
                       {"--log", command_.log_path},
                       {"--surface", command_.surface_path},
+                      {"--checkpoint", command_.checkpoints.folder},
+                      {"--checkpoint-seconds", fmt::format("{}", command_.checkpoints.least_seconds)},
+                      {"--resume", command_.checkpoints.resume ? "requested" : "not requested"},
                       {"--verify", command_.verify ? "requested" : "not requested"}},
                      ranks_);
   }
@@ -158,8 +161,12 @@ class Run {
       if (now.phase != "transform") signals_.stop_on_first_signal(is_silent);
       display.show(now);
     };
+    const CheckpointArguments& checkpoints = command_.checkpoints;
     return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(),
-                               &shared_.isosurface);
+                               &shared_.isosurface,
+                               {.folder = checkpoints.folder,
+                                .seconds = checkpoints.least_seconds,
+                                .is_resumed = checkpoints.resume});
   }
 
   MeshCommand command_;

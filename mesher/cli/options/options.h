@@ -37,6 +37,28 @@ struct ImageArguments {
   }
 };
 
+/// Checkpoints of a run on ranks.
+struct CheckpointArguments {
+  std::string folder;          ///< empty: none
+  double least_seconds = 600;  ///< between two of them
+  bool resume = false;
+
+  static constexpr auto options() {
+    using C = CheckpointArguments;
+    using enum OptionGroup;
+    return std::tuple{option(&C::folder, "checkpoint", "DIR", kOutput,
+                             "write checkpoints to this folder, which all ranks see",
+                             {.unset = "none", .uses = kOnRanks, .excludes = "target-elements"}),
+                      option(&C::least_seconds, "checkpoint-seconds", "S", kOutput,
+                             "the least time between two checkpoints, seconds; they are written between\n"
+                             "rounds, and at the end of a run that a limit or a signal ends",
+                             {.uses = kOnRanks, .quantity = "number of seconds", .needs = "checkpoint"}),
+                      option(&C::resume, "resume", "", kRun,
+                             "continue from the checkpoint in that folder, on any number of ranks",
+                             {.unset = "no", .uses = kOnRanks, .needs = "checkpoint", .excludes = "log"})};
+  }
+};
+
 /// podm mesh
 struct MeshCommand {
   ImageArguments image;
@@ -47,7 +69,8 @@ struct MeshCommand {
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
   std::string page_path;      ///< of --report; empty: no page
-  MeshingOptions meshing;     ///< lacks the four fields below, which need files, the image or the machine
+  CheckpointArguments checkpoints;
+  MeshingOptions meshing;  ///< lacks the four fields below, which need files, the image or the machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::string size_image_path;                               ///< empty: none
   std::vector<NearLabels> size_near;
@@ -116,6 +139,7 @@ struct MeshCommand {
                 .help_on_ranks =
                     "write every operation in its order, for podm replay: rank R to FILE.R, a single\n"
                     "rank to FILE"}),
+        nested(&M::checkpoints),
         option(&M::ranks_in_process, "in-process", "N", kRun,
                "ranks are threads of this process, one computing at a time, each with a virtual\n"
                "clock, for tests and predictions",

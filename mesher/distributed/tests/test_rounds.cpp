@@ -14,6 +14,7 @@
 #include "run/measure_quality.h"
 #include "sizing/default_sizes.h"
 #include "tests/images.h"
+#include "tests/scratch_folder.h"
 
 namespace podm::test {
 namespace {
@@ -34,7 +35,8 @@ struct Case {
 
 class Ranks {
  public:
-  explicit Ranks(const Case& of, std::uint64_t seed = 1, const Limits& limits = {})
+  explicit Ranks(const Case& of, std::uint64_t seed = 1, const Limits& limits = {},
+                 const CheckpointOptions& checkpoint_options = {})
       : case_(of), isosurface_(of.image, 1) {
     refined.resize(static_cast<std::size_t>(of.num_ranks));
     pieces.resize(refined.size());
@@ -52,8 +54,13 @@ class Ranks {
                           .initial_workers = of.threads};
           StopControl stop(limits, {}, [](std::uint64_t) {});
           const auto rank = static_cast<std::size_t>(ranks.rank());
-          refined[rank].emplace(podm_distributed(
-              *problem, team, {of.initial_ratio, of.cut_seed, of.algorithm, of.leaf_size_mm}, ranks, stop));
+          std::optional<Checkpoints> checkpoints;
+          if (!checkpoint_options.folder.empty())
+            checkpoints.emplace(checkpoint_options, std::vector<Fact>{}, ranks);
+          refined[rank].emplace(podm_distributed(*problem, team,
+                                                 {of.initial_ratio, of.cut_seed, of.algorithm,
+                                                  of.leaf_size_mm, checkpoints ? &*checkpoints : nullptr},
+                                                 ranks, stop));
         });
   }
 
@@ -128,17 +135,22 @@ class Ranks {
   SizeOptions sizes_;
 };
 
-class Rounds : public testing::TestWithParam<Case> {};
-
-TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
-  Ranks ranks(GetParam());
+// Expects that the ranks together have one mesh to which no rule applies.
+void expect_done(const Ranks& ranks, int num_ranks) {
   const std::unique_ptr<Mesh> whole = ranks.whole();
-  for (int rank = 0; rank < GetParam().num_ranks; ++rank) {
+  for (int rank = 0; rank < num_ranks; ++rank) {
     const Mesh& part = *ranks.refined[static_cast<std::size_t>(rank)]->refinement.mesh;
     EXPECT_TRUE(is_valid(part));
     EXPECT_EQ(ranks.cells_at_block(part, rank), ranks.cells_at_block(*whole, rank)) << "rank " << rank;
   }
   EXPECT_EQ(ranks.insertions_left(*whole), 0u);
+}
+
+class Rounds : public testing::TestWithParam<Case> {};
+
+TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
+  Ranks ranks(GetParam());
+  expect_done(ranks, GetParam().num_ranks);
 }
 
 // Returns a case with 2 computing nodes of 2 cores each, or for kPdr with one node per core. Leaves are
@@ -183,6 +195,32 @@ TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
     EXPECT_GT(insertions, 0u);
     EXPECT_GT(ranks.insertions_left(*whole), 0u);
   }
+}
+
+TEST(ResumedRounds, EndTheMeshOfACheckpointOnAnyNumberOfRanks) {
+  const ScratchFolder folder;
+  for (const std::uint64_t most_cells : {1000u, 6000u, 0u}) {  // in seeding, in the first round, and of all
+    const CheckpointOptions first{.folder = folder / std::to_string(most_cells), .seconds = 0};
+    CheckpointOptions resumed = first;
+    resumed.is_resumed = true;
+    Case of{"", ball(24, 9), 1.2, 0, 3};
+    { const Ranks begun(of, 1, {.max_elements = most_cells}, first); }
+    for (const int num_ranks : {1, 2, 3, 7}) {
+      of.num_ranks = num_ranks;
+      of.threads = 1 + num_ranks % 2;
+      const Ranks ranks(of, 1, {}, resumed);
+      expect_done(ranks, num_ranks);
+    }
+  }
+}
+
+TEST(ResumedRounds, RefineNoMeshThatIsDone) {
+  const ScratchFolder folder;
+  const Case of{"", ball(24, 9), 1.2, 0, 3}, of_more{"", ball(24, 9), 1.2, 0, 4};
+  const Ranks begun(of, 1, {}, {.folder = folder / "a", .seconds = 0});
+  const Ranks resumed(of_more, 1, {}, {.folder = folder / "a", .seconds = 0, .is_resumed = true});
+  EXPECT_EQ(begun.whole()->num_cells(), resumed.whole()->num_cells());
+  for (const auto& refined : resumed.refined) EXPECT_EQ(refined->refinement.counters.cells_created, 0u);
 }
 
 TEST(DrawnBlocks, TileSpaceAndAreThinNowAndThen) {
