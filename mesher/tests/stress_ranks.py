@@ -2,9 +2,10 @@
 script.
 
 `random` makes runs of podm-mpi with its ranks in one process. A seed alone determines phantom, ranks, algorithm,
-threads, initial ratio, R7 and the cuts of blocks. `images` meshes every image of a folder on several numbers of ranks,
-in one process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
-$PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
+threads, initial ratio, R7 and the cuts of blocks. Some runs are killed or end at a limit, and a run on another number
+of ranks resumes their checkpoint; a seed does not determine the moment of a kill. `images` meshes every image of a
+folder on several numbers of ranks, in one process and over MPI, and prints a table. Both exit with 1 when a run fails,
+and name it. The programs are $PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
 """
 
 import argparse
@@ -18,6 +19,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import time
 
 PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"]
 MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
@@ -69,17 +71,37 @@ class Sample:
 
 
 @dataclasses.dataclass
+class Cut:
+    """The early end of a run, and the number of ranks in process that resume it."""
+    limit: list    # options; none: the run is killed
+    kill_s: float  # after its first checkpoint
+    ranks: int
+
+
+@dataclasses.dataclass
 class OnRanks:
     """The name of a run, and the part of its command that differs between runs."""
     sample: Sample
     name: str
     launcher: list
     options: list
+    ranks: list = dataclasses.field(default_factory=list)  # options
+    cut: Cut | None = None
 
     def command(self, folder):
+        """Returns the command of the run, or of the run that resumes it."""
+        if self.cut is None:
+            return [*self.of_mesh(folder, self.ranks), "--record", folder / "run.jsonl", "--log", folder / "run.log"]
+        return [*self.of_mesh(folder, ["--in-process", self.cut.ranks]), "--record", folder / "run.jsonl",
+                "--checkpoint", folder / "saved", "--resume"]
+
+    def command_to_cut(self, folder):
+        return [*self.of_mesh(folder, self.ranks), "--checkpoint", folder / "saved", "--checkpoint-seconds", 1e-6,
+                *self.cut.limit]
+
+    def of_mesh(self, folder, ranks):
         return [*self.launcher, MPI_PROGRAM, "mesh", self.sample.path, "--radius", self.sample.radius_mm, "--delta",
-                self.sample.delta_mm, *self.options, "--oversubscribe", "-o", folder / "out.pvtu",
-                "--record", folder / "run.jsonl", "--log", folder / "run.log", "--quiet"]
+                self.sample.delta_mm, *ranks, *self.options, "--oversubscribe", "-o", folder / "out.pvtu", "--quiet"]
 
 
 @dataclasses.dataclass
@@ -114,15 +136,29 @@ def prove(run, folder):
     if unproved:
         raise Failed(f"podm-verify does not prove {', '.join(sorted(unproved))}: {json.dumps(claims)[:3000]}")
     ranks = range(record["ranks"]["number"])
-    logs = [f"run.log.{i}" for i in ranks]
-    call([PROGRAM, "replay", run.sample.path, *(folder / log for log in logs)])
+    logs = [] if run.cut else [f"run.log.{i}" for i in ranks]
+    if logs:
+        call([PROGRAM, "replay", run.sample.path, *(folder / log for log in logs)])
     if len(logs) > 1:
         call([MPI_PROGRAM, "replay", run.sample.path, folder / "run.log", "--in-process", len(logs)])
-    files = {*logs, *(f"out_{i}{facets}.vtu" for i in ranks for facets in ("", "_facets")), "out.pvtu",
-             "out_facets.pvtu", "run.jsonl", "report.json"}
+    files = {*logs, *["saved"] * (run.cut is not None), "out.pvtu", "out_facets.pvtu", "run.jsonl",
+             "report.json", *(f"out_{i}{facets}.vtu" for i in ranks for facets in ("", "_facets"))}
     if left := {path.name for path in folder.iterdir()} ^ files:
         raise Failed(f"left behind, or lacks: {sorted(left)}")
     return Made.of(record, run.sample)
+
+
+def begin(run, folder):
+    """Carries out a run until its cut, or until its end if that comes first."""
+    command = run.command_to_cut(folder)
+    if run.cut.limit:
+        call(command, accepted=(0, 1))
+        return
+    with subprocess.Popen([str(word) for word in command], env=ENVIRONMENT, stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None and not (folder / "saved" / "checkpoint.txt").exists():
+            time.sleep(0.01)
+        time.sleep(run.cut.kill_s)
+        process.kill()
 
 
 def carry_out(run):
@@ -130,9 +166,13 @@ def carry_out(run):
     with tempfile.TemporaryDirectory(prefix="podm-ranks-") as name:
         folder = pathlib.Path(name)
         try:
+            if run.cut:
+                begin(run, folder)
             call(run.command(folder))
             return prove(run, folder)
         except (Failed, subprocess.TimeoutExpired) as error:
+            if run.cut:
+                print(shlex.join(map(str, run.command_to_cut(folder))), f"# killed after {run.cut.kill_s} s")
             print(f"FAILED: {run.name}\n{shlex.join(map(str, run.command(folder)))}\n{error}", flush=True)
             return None
 
@@ -146,9 +186,17 @@ def drawn(seed, samples):
         threads *= 2
     moves = ["--min-dihedral", round(rng.uniform(4, 15), 1)] if rng.random() < 0.4 else []
     executor = rng.choice(["threads", "virtual"])
-    return OnRanks(sample, f"seed {seed}", [], ["--in-process", ranks, "--seed", seed, "--threads", threads,
-                                                "--initial-ratio", ratio, "--executor", executor, *moves,
-                                                "--algorithm", *algorithm])
+    return OnRanks(sample, f"seed {seed}", [], ["--seed", seed, "--threads", threads, "--initial-ratio", ratio,
+                                                "--executor", executor, *moves, "--algorithm", *algorithm],
+                   ["--in-process", ranks], drawn_cut(rng, sample))
+
+
+def drawn_cut(rng, sample):
+    if rng.random() < 0.6:
+        return None
+    limit = rng.choice([[], ["--max-elements", round(rng.uniform(0.05, 0.9) * sample.cells)],
+                        ["--max-seconds", round(rng.uniform(0.1, 3), 2)]])
+    return Cut(limit, round(rng.uniform(0, 1), 2), rng.randint(1, 9))
 
 
 def run_random(options):
@@ -160,16 +208,18 @@ def run_random(options):
             call([PROGRAM, "phantom", phantom, "--size", size, "-o", path])
             samples.append(Sample.of(path, options.cells))
         seeds = range(options.first, options.first + options.runs)
-        made = list(pool.map(carry_out, [drawn(seed, samples) for seed in seeds]))
-    good = [one for one in made if one is not None]
+        runs = [drawn(seed, samples) for seed in seeds]
+        made = list(pool.map(carry_out, runs))
     print(f"seeds {seeds.start} to {seeds.stop - 1} of about {options.cells} cells: {len(made)} runs, "
-          f"{len(made) - len(good)} failed", end="")
+          f"{sum(run.cut is not None for run in runs)} of them cut and resumed, {made.count(None)} failed", end="")
+    good = [one for one, run in zip(made, runs) if one is not None and run.cut is None]
     if good:
-        print(f"; at most {max(one.rounds for one in good)} rounds, {max(one.deferred for one in good):.1%} of the "
-              f"cells deferred in round 0; at least {min(one.in_zones for one in good):.1%} of the insertions not by "
-              f"one rank alone in a later round; cells {min(one.more_cells for one in good):+.2%} to "
-              f"{max(one.more_cells for one in good):+.2%} of one machine's")
-    return len(good) == len(made)
+        print(f"; of those not cut: at most {max(one.rounds for one in good)} rounds, "
+              f"{max(one.deferred for one in good):.1%} of the cells deferred in round 0; at least "
+              f"{min(one.in_zones for one in good):.1%} of the insertions not by one rank alone in a later round; "
+              f"cells {min(one.more_cells for one in good):+.2%} to {max(one.more_cells for one in good):+.2%} of one "
+              "machine's")
+    return None not in made
 
 
 def run_images(options):
@@ -181,7 +231,7 @@ def run_images(options):
     are_all_made = True
     for path in paths:
         sample = Sample.of(path, options.cells)
-        runs = [OnRanks(sample, f"{path.name}, {number} in process", [], ["--in-process", number])
+        runs = [OnRanks(sample, f"{path.name}, {number} in process", [], [], ["--in-process", number])
                 for number in IN_PROCESS_RANKS]
         runs += [OnRanks(sample, f"{path.name}, {number} of MPI", [MPIRUN, "-n", number],
                          ["--threads", 1]) for number in MPI_RANKS]
