@@ -112,20 +112,21 @@ void Checkpoints::write(const std::vector<LearntVertex>& vertices, std::uint64_t
   CheckpointPiece own;
   try {
     do_collectively([&] { own = write_checkpoint_piece(path, vertices); }, ranks_);
-    Bytes message;
-    append(message, std::vector<PieceSent>{sent(own)});
-    std::vector<CheckpointPiece> pieces;
-    for (const Bytes& one : ranks_.all_gather(std::move(message)))
-      pieces.push_back(received(values_of<PieceSent>(one).at(0)));
-    const auto write_on_first = [&] {
-      if (ranks_.rank() == 0) write_text(pieces, (last_ ? last_->rounds : 0) + rounds_of_run);
-    };
-    do_collectively(write_on_first, ranks_);
   } catch (const RefusedByAll&) {
     std::error_code error;
     std::filesystem::remove(path, error);
     throw;
   }
+  Bytes message;
+  append(message, std::vector<PieceSent>{sent(own)});
+  std::vector<CheckpointPiece> pieces;
+  for (const Bytes& one : ranks_.all_gather(std::move(message)))
+    pieces.push_back(received(values_of<PieceSent>(one).at(0)));
+  // If this fails, the pieces stay: the text may have its name already. A later checkpoint removes them.
+  const auto write_on_first = [&] {
+    if (ranks_.rank() == 0) write_text(pieces, (last_ ? last_->rounds : 0) + rounds_of_run);
+  };
+  do_collectively(write_on_first, ranks_);
   if (ranks_.rank() == 0) remove_other_pieces();
   written_ = Clock::now();
 }

@@ -38,10 +38,8 @@ void add_replay_command(CLI::App& program, ReplayCommand& command) {
 }
 
 void add_replay_on_ranks_command(CLI::App& program, ReplayCommand& command) {
-  CLI::App& app =
-      add_command(program, "replay",
-                  "carry out the logged operations of a run on ranks, each rank those of its own\n"
-                  "log, and compare logs and mesh");
+  CLI::App& app = add_command(program, "replay",
+                              "carry out the logged operations of each rank on a rank, and compare the mesh");
   add_image_options(app, command.image);
   require(add_one(app, "LOG", "",
                   "the FILE of podm-mpi mesh --log FILE, with the same image and label options;\n"
