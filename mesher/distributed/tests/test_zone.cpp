@@ -13,7 +13,7 @@
 namespace podm::test {
 namespace {
 
-class Zones : public testing::Test {
+class CubesAndZones : public testing::Test {
  protected:
   // Draws some boxes of cubes, which resemble zones more than single cubes do.
   CubeSet drawn_cubes() {
@@ -36,7 +36,7 @@ class Zones : public testing::Test {
   const CubeGrid grid_{{{0, 0, 0}, {22, 17, 12}}, 1.7};
 };
 
-TEST_F(Zones, DepthsAreRingsOfCubesInTheSet) {
+TEST_F(CubesAndZones, DepthsAreRingsOfCubesInTheSet) {
   for (int i = 0; i < 20; ++i) {
     const CubeSet set = drawn_cubes();
     const CubeDepths depths(set, 5);
@@ -52,7 +52,7 @@ TEST_F(Zones, DepthsAreRingsOfCubesInTheSet) {
   }
 }
 
-TEST_F(Zones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
+TEST_F(CubesAndZones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
   for (int i = 0; i < 20; ++i) {
     CubeSet set(grid_);
     for (int cubes = draw(6) * draw(6); cubes > 0; --cubes)
@@ -79,7 +79,7 @@ TEST_F(Zones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
   }
 }
 
-TEST_F(Zones, WhatIsWithinReachOfAPointIsInTheZone) {
+TEST_F(CubesAndZones, WhatIsWithinReachOfAPointIsInTheZone) {
   int num_within = 0;
   for (int i = 0; i < 20; ++i) {
     const CubeSet own = drawn_cubes();
@@ -94,7 +94,7 @@ TEST_F(Zones, WhatIsWithinReachOfAPointIsInTheZone) {
   EXPECT_GT(num_within, 100);
 }
 
-TEST_F(Zones, InsertionsHaveRoomWhereTheBallAroundThemLiesInTheZone) {
+TEST_F(CubesAndZones, InsertionsHaveRoomWhereTheBallAroundThemLiesInTheZone) {
   std::array<int, 2> count{};
   for (int i = 0; i < 20; ++i) {
     const CubeSet own = drawn_cubes();
@@ -122,7 +122,7 @@ TEST_F(Zones, InsertionsHaveRoomWhereTheBallAroundThemLiesInTheZone) {
 }
 
 // Also tests balls that just touch a cube.
-TEST_F(Zones, ABallIsKnownOnceItsCubesAre) {
+TEST_F(CubesAndZones, ABallIsKnownOnceItsCubesAre) {
   for (int i = 0; i < 20; ++i) {
     const CubeSet own = drawn_cubes();
     for (int k = 0; k < 200; ++k) {
@@ -139,7 +139,7 @@ TEST_F(Zones, ABallIsKnownOnceItsCubesAre) {
   }
 }
 
-TEST_F(Zones, ACellWithoutASphereIsKnownOnceAllIs) {
+TEST_F(CubesAndZones, ACellWithoutASphereIsKnownOnceAllIs) {
   Cell cell{};
   cell.squared_radius = std::numeric_limits<float>::quiet_NaN();
   const CubeSet own = drawn_cubes();
