@@ -1,0 +1,28 @@
+// The command line of podm-verify and podm-verify-mpi.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "options.h"
+
+namespace podm::verify {
+
+inline constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;  ///< exit codes
+
+struct Command {
+  Options options;
+  bool quiet = false;
+};
+
+/// A command to carry out, or the texts to show and the exit code instead: help, version, bad usage.
+struct CommandLine {
+  std::optional<Command> command;
+  std::string out, err;
+  int exit_code = kSuccess;
+};
+
+/// Throws InputError.
+CommandLine parse_command_line(int argc, const char* const* argv, const char* program);
+
+}  // namespace podm::verify
