@@ -1,11 +1,12 @@
 #!/bin/sh
 # Usage: ci/ranks.sh
-# Builds the programs in build/ and makes RANKS_RUNS (20) meshes on 2 to 9 ranks of one process, of about RANKS_CELLS
+# Builds the programs in build/ and makes RANKS_RUNS (20) meshes on 2 to 64 ranks of one process, of about RANKS_CELLS
 # (20000) cells each. The seeds from RANKS_FIRST (1) on draw the phantom, ranks, algorithm, threads, initial ratio (1 to
-# 2) and the cuts into blocks, including thin blocks. podm-verify must prove all claims of each mesh from its pieces,
-# and podm replay must make the mesh again from the logs of its ranks. With RANKS_IMAGES=FOLDER the images of that
-# folder are meshed instead, with about RANKS_CELLS (3000000) cells, on 2, 3, 5 and 8 ranks in process and on 2 and 4 of
-# MPI; the output is then a table in Markdown. If a run fails, its command is printed and the exit code is 1.
+# 2) and the cuts into blocks, including thin blocks; and they cut some runs, which other ranks resume from a
+# checkpoint. podm-verify must prove all claims of each mesh from its pieces, and podm replay must make the mesh again
+# from the logs of its ranks. With RANKS_IMAGES=FOLDER the images of that folder are meshed instead, with about
+# RANKS_CELLS (3000000) cells, on 2, 3, 5 and 8 ranks in process and on 2 and 4 of MPI; the output is then a table in
+# Markdown. If a run fails, its command is printed and the exit code is 1.
 set -eu
 cd "$(dirname "$0")/.."
 

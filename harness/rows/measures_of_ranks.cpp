@@ -67,6 +67,26 @@ Value deferred_share(const Row& row) {
   if (ranks->rounds.empty()) return absent("one rank has no rounds");
   return quotient({static_cast<double>(ranks->rounds.front().deferred), ""}, cells(row));
 }
+Value store_cells_per_cell(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  if (ranks == nullptr) return no_ranks();
+  double sum = 0;
+  for (const RankRecord& rank : ranks->by_rank) {
+    if (!rank.store_cells) return absent("rows have no ranks/by_rank/store_cells");
+    sum += static_cast<double>(*rank.store_cells);
+  }
+  return quotient({sum, ""}, cells(row));
+}
+Value learnt_per_vertex(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  if (ranks == nullptr) return no_ranks();
+  if (!ranks->last_update) return absent("rows have no ranks/last_update");
+  auto learnt = static_cast<double>(ranks->last_update->inserted);
+  for (const RankRecord& rank : ranks->by_rank) learnt += static_cast<double>(rank.seed_vertices.value_or(0));
+  for (const RoundRecord& round : ranks->rounds)
+    learnt += round.update ? static_cast<double>(round.update->inserted) : 0;
+  return quotient({learnt, ""}, {static_cast<double>(row.mesh->vertices), ""});
+}
 Value cells_over_one_machine(const Row& row) {
   if (!row.resolved) return absent("rows have no resolved");
   return quotient(cells(row), {static_cast<double>(row.resolved->cells), ""});
@@ -147,6 +167,8 @@ constexpr Measure kOfRanks[] = {
     {"rounds", "", kLess, kCount, rounds},
     {"deferred_share", "", kLess, kCount, deferred_share},
     {"imbalance", "", kLess, kCount, imbalance},
+    {"store_cells_per_cell", "", kLess, kCount, store_cells_per_cell},
+    {"learnt_per_vertex", "", kLess, kCount, learnt_per_vertex},
     {"cells_over_one_machine", "", kLess, kCount, cells_over_one_machine},
 };
 

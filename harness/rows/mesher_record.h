@@ -95,16 +95,28 @@ struct SpentRecord {
 
 struct RankRecord {
   std::uint64_t cells = 0;
+  std::optional<std::uint64_t> store_cells;    ///< with those that other ranks have, too
+  std::optional<std::uint64_t> seed_vertices;  ///< inserted before round 0
   ByName<SpentRecord> spent;
   JsonPointer as_written;
-  static constexpr auto fields() { return PODM_FIELDS(RankRecord, cells, spent); }
+  static constexpr auto fields() {
+    return PODM_FIELDS(RankRecord, cells, (store_cells), (seed_vertices), spent);
+  }
+};
+
+/// Vertices that all ranks learn at once.
+struct UpdateRecord {
+  std::uint64_t inserted = 0;
+  JsonPointer as_written;
+  static constexpr auto fields() { return PODM_FIELDS(UpdateRecord, inserted); }
 };
 
 /// A round of all ranks.
 struct RoundRecord {
-  std::uint64_t deferred = 0;  ///< cells
+  std::uint64_t deferred = 0;          ///< cells
+  std::optional<UpdateRecord> update;  ///< before the round
   JsonPointer as_written;
-  static constexpr auto fields() { return PODM_FIELDS(RoundRecord, deferred); }
+  static constexpr auto fields() { return PODM_FIELDS(RoundRecord, deferred, (update)); }
 };
 
 /// The ranks as podm-mpi reports them.
@@ -112,9 +124,12 @@ struct RanksRecord {
   std::uint64_t number = 0;
   double imbalance = 1;  ///< largest number of cells of a rank over the mean
   std::vector<RoundRecord> rounds;
+  std::optional<UpdateRecord> last_update;  ///< after all rounds
   std::vector<RankRecord> by_rank;
   JsonPointer as_written;
-  static constexpr auto fields() { return PODM_FIELDS(RanksRecord, number, imbalance, rounds, by_rank); }
+  static constexpr auto fields() {
+    return PODM_FIELDS(RanksRecord, number, imbalance, rounds, (last_update), by_rank);
+  }
 };
 
 /// Cells with a dihedral angle out of bounds, by whether a vertex of theirs is free.

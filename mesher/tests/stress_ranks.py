@@ -179,7 +179,7 @@ def carry_out(run):
 
 def drawn(seed, samples):
     rng = random.Random(seed)
-    sample, ranks, threads = rng.choice(samples), rng.randint(2, 9), rng.randint(1, 2)
+    sample, ranks, threads = rng.choice(samples), drawn_ranks(rng), rng.randint(1, 2)
     ratio = round(rng.uniform(1, 2), 3)
     algorithm = rng.choice([["podm"], ["pdr"], ["pdr-podm", "--nodes", threads, "--cores-per-node", 2]])
     if algorithm[0] == "pdr-podm":
@@ -191,12 +191,17 @@ def drawn(seed, samples):
                    ["--in-process", ranks], drawn_cut(rng, sample))
 
 
+def drawn_ranks(rng):
+    """Returns few ranks more often than many, which take longer."""
+    return rng.randint(2, 64 if rng.random() < 0.2 else 9)
+
+
 def drawn_cut(rng, sample):
     if rng.random() < 0.6:
         return None
     limit = rng.choice([[], ["--max-elements", round(rng.uniform(0.05, 0.9) * sample.cells)],
                         ["--max-seconds", round(rng.uniform(0.1, 3), 2)]])
-    return Cut(limit, round(rng.uniform(0, 1), 2), rng.randint(1, 9))
+    return Cut(limit, round(rng.uniform(0, 1), 2), rng.choice([1, drawn_ranks(rng)]))
 
 
 def run_random(options):

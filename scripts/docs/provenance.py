@@ -13,8 +13,8 @@ FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quali
 # Such values in files that hold no rows of trials: random runs, plans beside runs.
 FACTS_ELSEWHERE = {"cells", "planned_cells", "components", "lost", "cut", "missed", "lost_not_said_whole",
                    "cut_by_details", "runs", "counts", "failed_seeds", "first_seed", "last_seed"}
-FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance"
-                            r"|cells_over_one_machine)\b"
+FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|threads|asked_cells|cells_per_rank|rounds|deferred_share|imbalance"
+                            r"|cells_over_one_machine|store_cells_per_cell|learnt_per_vertex)\b"
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
 # For workers in virtual time these are virtual seconds and counts, which do not depend on the machine either. Virtual

@@ -119,14 +119,17 @@ def _peers(sources, folder):
 def ranks(sources, folder):
     """Properties of meshes on ranks that do not depend on the machine; no seconds."""
     table = distributed.distributed(sources.frame((folder,)))
-    table = table[table["ranks"] > 1].sort_values(["cells_per_rank", "ranks"])
+    table = table[table["ranks"] > 1].sort_values(["threads", "cells_per_rank", "ranks"])
     return _lines(pandas.DataFrame({
-        "M cells per rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]], "ranks": table["ranks"],
+        "threads": table["threads"], "M cells per rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]],
+        "ranks": table["ranks"],
         "M cells": [f"{value / 1e6:.2f}" for value in table["cells"]],
         "rounds": [f"{value:.0f}" for value in table["rounds"]],
         "share of cells deferred in round 0": [f"{100 * value:.1f} %" for value in table["deferred_share"]],
         "most cells of a rank over the mean": [f"{value:.3f}" for value in table["imbalance"]],
-        "cells over those of one machine": [f"{value:.4f}" for value in table["cells_over_one_machine"]]}))
+        "cells over those of one machine": [f"{value:.4f}" for value in table["cells_over_one_machine"]],
+        "cells of all stores per cell": [f"{value:.2f}" for value in table["store_cells_per_cell"]],
+        "seeds and vertices learnt per vertex": [f"{value:.2f}" for value in table["learnt_per_vertex"]]}))
 
 
 def simulated_speedups(sources, folder):

@@ -1,10 +1,10 @@
 """Extrapolates from simulated ranks of few cells to nodes of 20 million, with a model of each part of the time, fitted
 over sizes.
 
-At each number of ranks, each part of the microseconds per cell of a rank is a sum of four terms, none of them negative:
-one for the cells (1), one for the surface of a rank's share (cells^(-1/3)), along which round 0 defers, one for its
-edges (cells^(-2/3)), along which later rounds defer, and one for costs that occur once per rank (1 / cells). The parts
-of one rank, whose sum is the base, are fitted in the same way.
+For each number of ranks and of threads per rank, each part of the microseconds per cell of a rank is a sum of at most
+two terms, none of them negative: for the cells (1), for the surface of a rank's share (cells^(-1/3)), along which round
+0 defers, for its edges (cells^(-2/3)), along which later rounds defer, and for costs that occur once per rank (1 /
+cells). The parts of one rank with as many threads, whose sum is the base, are fitted in the same way.
 """
 import numpy
 import pandas
@@ -16,58 +16,60 @@ from .distributed import PARTS, REFINING
 NODE_CELLS = 20e6
 LEAST_SIZES = 3
 LEAST_CELLS_PER_RANK = 100e3  # with fewer cells most cells lie along the borders of blocks
-NODES = (8, 64)
-THREADS = (1, 16)
+NODES = (1, 8, 64)
 TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "edges": lambda n: n ** (-2 / 3),
          "once": lambda n: 1 / n}
 # The terms of each part. The image does not depend on the size.
-MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "learn": ("volume", "surface"),
-         "refine": ("volume", "surface"), "later": ("surface", "edges"), "exchange": ("volume", "surface"),
-         "waiting": ("volume", "surface", "edges"), "network": ("surface", "once"), "extract": ("volume", "surface")}
-# The other parts run on one thread today, whatever the number of threads of a node.
-THREADED = ("transform", "initial", "refine", "later", "waiting", "extract")
-REFINING_PARTS = (*REFINING, "learn", "waiting", "network")
+MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "refine": ("volume", "surface"),
+         "later": ("surface", "edges"), "exchange": ("volume", "surface"), "waiting": ("volume", "surface"),
+         "network": ("surface", "once"), "extract": ("volume", "surface")}
+REFINING_PARTS = (*REFINING, "waiting", "network")
 COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refining_efficiency",
            "refining_efficiency_low", "refining_efficiency_high", "efficiency", "efficiency_low", "efficiency_high",
            "worst_miss", *PARTS]
 ASSUMPTIONS = (
     "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of parts that grow "
     "with the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the "
-    "range when any one of the sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
-    "the ratio simulated, is made by all threads of the first node while the others wait, and learned by one of each; "
-    "that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and leave updates "
-    "to one; that nodes are as fast as the processor that simulated them, all the same, and the network as stated, "
-    "without congestion; that each node holds the image, the same for all sizes")
+    "range when any one of the sizes is left out, no confidence interval. It is assumed that nodes are as fast as the "
+    "processor that simulated them, all the same, that their threads share work as simulated threads do, and the "
+    "network as stated, without congestion")
 
 
 def extrapolated(table):
-    """One line per number of nodes and threads per node with three simulated sizes or more. With two sizes nothing
-    would be left to check the model. `worst_miss`: each size is predicted from the other sizes; the greatest relative
-    error in microseconds per cell."""
+    """One line per number of nodes and threads per node with three simulated sizes or more, also of one node. With two
+    sizes nothing would be left to check the model. `worst_miss`: each size is predicted from the other sizes; the
+    greatest relative error in microseconds per cell."""
     simulated = table[(table["basis"] == "simulated") & (table["cells_per_rank"] >= LEAST_CELLS_PER_RANK)]
-    by_size = simulated.fillna({part: 0.0 for part in PARTS}).set_index("cells_per_rank")
-    base, lines = by_size[by_size["ranks"] == 1], []
-    for ranks in NODES:
-        many = by_size[by_size["ranks"] == ranks]
-        if len(many) >= LEAST_SIZES and len(base) >= LEAST_SIZES:
-            lines += [_line(ranks, threads, many, base) for threads in THREADS]
+    lines = []
+    for _, same in simulated.fillna({part: 0.0 for part in PARTS}).groupby("threads"):
+        by_size = same.set_index("cells_per_rank")
+        base = by_size[by_size["ranks"] == 1]
+        for ranks in NODES:
+            many = by_size[by_size["ranks"] == ranks]
+            if len(many) >= LEAST_SIZES and len(base) >= LEAST_SIZES:
+                lines.append(_line(many, base))
     return pandas.DataFrame(lines, columns=COLUMNS)
 
 
-def _line(ranks, threads, many, base):
+def _line(many, base):
     """A single rank may have been simulated at further sizes."""
     def efficiencies(left_out=()):
         ours, alone = (_parts_at(NODE_CELLS, one.drop(index=left_out, errors="ignore")) for one in (many, base))
-        return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
+        return numpy.array([sum(alone[part] for part in parts) / sum(ours[part] for part in parts)
                             for parts in (REFINING_PARTS, PARTS)])
 
     value, sizes = efficiencies(), list(many.index)
     bounds = numpy.array([value, *(efficiencies([size]) for size in sizes)])
-    return {"basis": "extrapolated", "ranks": ranks, "threads": threads, "cells_per_rank": NODE_CELLS, "n": len(sizes),
-            "sizes": " and ".join(scaling.short(size) for size in sizes),
+    return {"basis": "extrapolated", "ranks": many["ranks"].iloc[0], "threads": many["threads"].iloc[0],
+            "cells_per_rank": NODE_CELLS, "n": len(sizes), "sizes": _in_words(sizes),
             **{name + end: number for end, numbers in (("", value), ("_low", bounds.min(0)), ("_high", bounds.max(0)))
                for name, number in zip(("refining_efficiency", "efficiency"), numbers)},
-            "worst_miss": _worst_miss(many), **_of_threads(_parts_at(NODE_CELLS, many), threads)}
+            "worst_miss": _worst_miss(many), **_parts_at(NODE_CELLS, many)}
+
+
+def _in_words(sizes):
+    *most, last = (scaling.short(size) for size in sizes)
+    return f"{', '.join(most)} and {last}"
 
 
 def _parts_at(cells, table):
@@ -85,15 +87,6 @@ def _fitted(sizes, values, terms, cells):
     coefficients, _ = nnls(columns / scales, values)
     return float(sum(one / scale * TERMS[term](numpy.array([cells]))[0]
                      for one, scale, term in zip(coefficients, scales, terms)))
-
-
-def _of_threads(parts, threads):
-    return {part: value / (threads if part in THREADED else 1) for part, value in parts.items()}
-
-
-def _sum(parts, chosen, threads):
-    divided = _of_threads(parts, threads)
-    return sum(divided[part] for part in chosen)
 
 
 def _worst_miss(many):

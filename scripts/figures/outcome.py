@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 import pandas
 
 from . import (ablation, cache, corpus, deviation, dihedral, distributed, distributed_figure, distributed_model,
-               experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, paper_claims,
-               pareto, peers, scaling, simulated, simulated_sizes, solvers, table1, table2, table3, validation,
-               verdicts)
+               distributed_strong, experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine,
+               machine_state, paper_claims, pareto, peers, scaling, simulated, simulated_sizes, solvers, table1, table2,
+               table3, validation, verdicts)
 
 
 # Tables with times that this machine measured. They also state the machine's condition.
@@ -60,6 +60,7 @@ def _tables(frame, series, hops, ranks, nodes):
               "cache": (cache.cache(frame), cache), "corpus": (corpus.corpus(frame), corpus),
               "pareto": (pareto.fronts(pareto.pareto(frame)), pareto),
               "distributed": (ranks, distributed), "distributed_extrapolated": (nodes, distributed_model),
+              "distributed_strong": (distributed_strong.strong(frame), distributed_strong),
               "guarantees": (guarantees.ours(frame), guarantees),
               "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
     made = {**always, **{name: entry for name, entry in others.items() if len(entry[0])}}

@@ -21,7 +21,7 @@ FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig4b": "Figure 4 (b): time and elements per second",
                  "deviation": "Simulated speed-ups beside the paper's",
                  "lost": "Where the time of simulated cores goes",
-                 "distributed": "Weak scaling on ranks that share no memory",
+                 "distributed": "Weak scaling on ranks that share no memory, and the parts of their time",
                 "dihedral": "Dihedral angles before and after the stages against slivers",
                 "solvers": "What meshes cost a solver: iterations of conjugate gradients",
                 "corpus": "Seconds over voxels, by setting",
@@ -31,7 +31,8 @@ TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses 
                 "solvers": "Slivers and solvers: iterations of conjugate gradients",
                 "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour",
                 "distributed": "Ranks that share no memory",
-                "distributed_extrapolated": "Ranks of nodes of 20 million cells, extrapolated"}
+                "distributed_extrapolated": "Ranks of nodes of 20 million cells, extrapolated",
+                "distributed_strong": "Ranks that make the same number of cells in all"}
 FOLDED_TABLES = ("simulated", "cache")
 NOTES = {
     "table1": "Refining: octree, initial mesh, refinement and closing alone; its efficiency is the median of ratios "

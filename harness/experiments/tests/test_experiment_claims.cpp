@@ -131,6 +131,16 @@ const std::map<std::string, SetValue> kSetters = {
        ranks_of(row).rounds.emplace_back().deferred = many(value);
      }},
     {"imbalance", [](Row& row, double value) { ranks_of(row).imbalance = value; }},
+    {"store_cells_per_cell",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(1);
+       ranks_of(row).by_rank.emplace_back().store_cells = many(value);
+     }},
+    {"learnt_per_vertex",
+     [](Row& row, double value) {
+       mesh_of(row).vertices = many(1);
+       ranks_of(row).last_update.emplace().inserted = many(value);
+     }},
     {"cells_over_one_machine",
      [](Row& row, double value) {
        row.resolved.emplace().cells = many(1);

@@ -56,9 +56,11 @@ Row full_row() {
 Row row_on_ranks() {
   Row row = full_row();
   row.mesh->ranks = from_json<RanksRecord>(Json::parse(R"({
-    "number": 2, "imbalance": 1.5, "rounds": [{"deferred": 300}, {"deferred": 0}],
+    "number": 2, "imbalance": 1.5,
+    "rounds": [{"deferred": 300, "update": {"inserted": 0}}, {"deferred": 0, "update": {"inserted": 40}}],
+    "last_update": {"inserted": 20},
     "by_rank": [
-      {"cells": 900, "spent": {
+      {"cells": 900, "store_cells": 1000, "seed_vertices": 12, "spent": {
         "transform": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
         "initial": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
         "refine": {"computing_s": 4, "waiting_s": 0, "network_s": 0},
@@ -66,7 +68,7 @@ Row row_on_ranks() {
         "exchange": {"computing_s": 1, "waiting_s": 0, "network_s": 2},
         "extract": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
         "measure": {"computing_s": 50, "waiting_s": 0, "network_s": 0}}},
-      {"cells": 300, "spent": {
+      {"cells": 300, "store_cells": 800, "seed_vertices": 18, "spent": {
         "transform": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
         "initial": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
         "refine": {"computing_s": 2, "waiting_s": 0, "network_s": 0},
@@ -108,6 +110,8 @@ constexpr std::pair<const char*, double> kOfRanks[] = {
     {"rounds", 2},
     {"deferred_share", 0.25},
     {"imbalance", 1.5},
+    {"store_cells_per_cell", 1.5},
+    {"learnt_per_vertex", 0.3},
 };
 
 TEST(Measures, OfRanksAreWhatTheTableSays) {
@@ -122,6 +126,11 @@ TEST(Measures, OfRanksAreWhatTheTableSays) {
   Row alone = row_on_ranks();
   alone.mesh->ranks->rounds.clear();
   EXPECT_FALSE(find_measure("deferred_share")->read(alone).number) << "one rank defers nothing";
+  Row older = row_on_ranks();
+  older.mesh->ranks->last_update.reset();
+  older.mesh->ranks->by_rank.back().store_cells.reset();
+  for (const char* name : {"store_cells_per_cell", "learnt_per_vertex"})
+    EXPECT_FALSE(find_measure(name)->read(older).number) << name << " of a row that lacks a part of it";
   EXPECT_DOUBLE_EQ(*find_measure("virtual_refining_seconds")->read(row_on_ranks()).number, 10);
 }
 
