@@ -1,6 +1,6 @@
 // The communication between ranks. The interface is small because it has two implementations
-// (in_process_ranks.h, mpi_communication.h). Every function except those of the clock is collective: all
-// ranks call the same functions in the same order.
+// (in_process_ranks.h, mpi_communication.h). Every function except announcements and those of the clock is
+// collective: all ranks call the same functions in the same order.
 #pragma once
 
 #include <cstddef>
@@ -51,6 +51,11 @@ class Communication {
   virtual void maximum(std::span<std::uint64_t> values) = 0;
   /// Returns when all ranks have called it.
   virtual void barrier() = 0;
+
+  /// Announces a value to all ranks. Waits for no rank.
+  virtual void announce(std::uint64_t value) = 0;
+  /// Returns the largest value that has been announced by this rank or has reached it; 0 if there is none.
+  virtual std::uint64_t announced() = 0;
 
   /// Returns this rank's clock, in seconds since an arbitrary moment: wall time or virtual time.
   virtual double seconds() const = 0;

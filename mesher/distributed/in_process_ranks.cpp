@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <condition_variable>
 #include <mutex>
@@ -75,7 +76,8 @@ struct RankState {
 };
 
 // The meeting place of all ranks. The last rank to arrive carries out the collective for all ranks while the
-// others wait. A rank that computes owns its clock and report; one mutex protects everything else.
+// others wait. A rank that computes owns its clock and report; one mutex protects everything else, except
+// announcements: they are single numbers that order no other data, and therefore relaxed atomics.
 class MeetingPlace {
  public:
   explicit MeetingPlace(const InProcessOptions& options);
@@ -94,8 +96,11 @@ class MeetingPlace {
   void end(int rank);
   /// Ends the rank with the exception that is being handled.
   void end_by_exception(int rank);
+  void announce(std::uint64_t value) { raise(options_.one_at_a_time ? announced_ : heard_, value); }
+  std::uint64_t heard() const { return heard_.load(std::memory_order_relaxed); }
 
  private:
+  static void raise(std::atomic<std::uint64_t>& largest, std::uint64_t value);
   void wait_for_turn(std::unique_lock<std::mutex>& lock, RankState& self);
   void throw_if_failed() const;
   void fail(int rank);
@@ -124,6 +129,7 @@ class MeetingPlace {
   Agreed agreed_;             // call of the ranks that wait, if any
   std::optional<int> ended_;  // a rank that has returned, if any
   std::optional<RankFailure> failure_;
+  std::atomic<std::uint64_t> announced_ = 0, heard_ = 0;  // announced_: to be heard after the next collective
 };
 
 MeetingPlace::MeetingPlace(const InProcessOptions& options)
@@ -262,8 +268,16 @@ void MeetingPlace::meet(Collective collective) {
       break;
   }
   move_clocks(network_s);
+  raise(heard_, announced_.load(std::memory_order_relaxed));
   num_waiting_ = 0;
   let_run();
+}
+
+// Sets `largest` to the value if it is less.
+void MeetingPlace::raise(std::atomic<std::uint64_t>& largest, std::uint64_t value) {
+  std::uint64_t present = largest.load(std::memory_order_relaxed);
+  while (present < value && !largest.compare_exchange_weak(present, value, std::memory_order_relaxed)) {
+  }
 }
 
 double MeetingPlace::seconds_of_all_to_all() {
@@ -354,6 +368,11 @@ class InProcessRank final : public Communication {
   void sum(std::span<std::uint64_t> values) override { take_part({Collective::kSum, {}, values}); }
   void maximum(std::span<std::uint64_t> values) override { take_part({Collective::kMaximum, {}, values}); }
   void barrier() override { take_part({Collective::kBarrier}); }
+  void announce(std::uint64_t value) override {
+    announced_ = std::max(announced_, value);
+    place_.announce(value);
+  }
+  std::uint64_t announced() override { return std::max(announced_, place_.heard()); }
 
   double seconds() const override {
     state_.look_at_processor();
@@ -375,6 +394,7 @@ class InProcessRank final : public Communication {
   MeetingPlace& place_;
   RankState& state_;
   int rank_;
+  std::uint64_t announced_ = 0;  // the largest value of its own
 };
 
 void run_rank(MeetingPlace& place, int rank, const std::function<void(Communication&)>& body) try {

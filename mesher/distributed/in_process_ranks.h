@@ -17,6 +17,9 @@
 //
 // Empty messages and messages of a rank to itself are free. A collective takes the same time on all ranks, so
 // the model has no overlap.
+//
+// Announcements are free. They arrive at once if ranks compute at the same time. If one rank computes at a
+// time they arrive with the next collective, so that the order of the ranks does not change what they do.
 #pragma once
 
 #include <cstdint>

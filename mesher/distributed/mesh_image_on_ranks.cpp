@@ -131,12 +131,17 @@ MeshingOptions with_algorithm(MeshingOptions options) {
 class RunOnRank {
  public:
   RunOnRank(const LabelImage& image, const MeshingOptions& options, Communication& ranks,
-            const ProgressCallback& progress, std::stop_token stop, SharedIsosurface* isosurface)
+            const ProgressCallback& progress, EndOnAllRanks& end, SharedIsosurface* isosurface)
       : image_(image),
         options_(with_algorithm(options)),
         ranks_(ranks),
         isosurface_(isosurface),
-        phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size(),
+        end_(end),
+        progress_([&end, progress](const Progress& now) {
+          end.hear();
+          if (progress) progress(now);
+        }),
+        phases_(image, options_, progress_, end_.token(), 1.0 / ranks.size(),
                 [&ranks] { return ranks.seconds(); }) {}
 
   /// Collective. To be called before the run.
@@ -229,7 +234,8 @@ class RunOnRank {
                                          .cut_seed = options_.cut_seed,
                                          .algorithm = options_.algorithm,
                                          .leaf_size_mm = options_.leaves.size_mm,
-                                         .checkpoints = checkpoints_ ? &*checkpoints_ : nullptr},
+                                         .checkpoints = checkpoints_ ? &*checkpoints_ : nullptr,
+                                         .end = &end_},
                                         ranks_, stop));
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
@@ -283,6 +289,8 @@ class RunOnRank {
   const MeshingOptions options_;
   Communication& ranks_;
   SharedIsosurface* const isosurface_;
+  EndOnAllRanks& end_;
+  const ProgressCallback progress_;
   PhasesOfRun phases_;
   Spending spending_{ranks_};
   std::optional<Checkpoints> checkpoints_;
@@ -295,13 +303,14 @@ MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions
                                    Communication& ranks, const ProgressCallback& progress,
                                    std::stop_token stop, SharedIsosurface* isosurface,
                                    const CheckpointOptions& checkpoints) {
+  EndOnAllRanks end(ranks, std::move(stop));
   std::optional<RunOnRank> run;
   do_collectively(
       [&] {
         check_options(image, options);
         check_options_on_ranks(options);
         check_checkpoints(checkpoints, options, ranks.size());
-        run.emplace(image, options, ranks, progress, std::move(stop), isosurface);
+        run.emplace(image, options, ranks, progress, end, isosurface);
       },
       ranks);
   if (ranks.size() > 1) expect_agreement(facts_of(image, options), ranks);

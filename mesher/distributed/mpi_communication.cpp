@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdlib>
 #include <ctime>
+#include <deque>
 #include <numeric>
 
 namespace podm {
@@ -56,8 +57,9 @@ class MpiCommunication final : public Communication {
     check(MPI_Comm_set_errhandler(all_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
     check(MPI_Comm_rank(all_, &rank_), "MPI_Comm_rank");
     check(MPI_Comm_size(all_, &size_), "MPI_Comm_size");
+    check(MPI_Comm_dup(all_, &announcements_), "MPI_Comm_dup");
   }
-  ~MpiCommunication() override { MPI_Comm_free(&all_); }
+  ~MpiCommunication() override;
   MpiCommunication(const MpiCommunication&) = delete;
   MpiCommunication& operator=(const MpiCommunication&) = delete;
 
@@ -78,6 +80,8 @@ class MpiCommunication final : public Communication {
     const CollectiveClock clock(in_collectives_);
     check(MPI_Barrier(all_), "MPI_Barrier");
   }
+  void announce(std::uint64_t value) override;
+  std::uint64_t announced() override;
   double seconds() const override { return MPI_Wtime(); }
   RankReport report() const override {
     RankReport report = sent_;
@@ -90,6 +94,7 @@ class MpiCommunication final : public Communication {
   void start_receiving(Bytes& message, int from, std::vector<MPI_Request>& requests);
   void start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests);
   void reduce(std::span<std::uint64_t> values, MPI_Datatype type, MPI_Op operation);
+  void receive_announcement();
   std::size_t num_ranks() const { return static_cast<std::size_t>(size_); }
   void note_sent(const Bytes& message) {
     sent_.messages_sent += !message.empty();
@@ -100,8 +105,11 @@ class MpiCommunication final : public Communication {
   InCollectives in_collectives_;
   RankReport sent_;
   std::size_t most_bytes_;
-  MPI_Comm all_ = MPI_COMM_NULL;
+  MPI_Comm all_ = MPI_COMM_NULL, announcements_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
+  std::deque<std::uint64_t> announced_;  // values that this rank sent, which must stay where they are
+  std::vector<MPI_Request> announcing_;  // sends of these values
+  std::uint64_t largest_announced_ = 0, num_received_ = 0;
 };
 
 // Sends the messages one by one, directly from and to their own memory. MPI_Alltoallv would require copies of
@@ -189,6 +197,52 @@ void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Datatype type
     check(MPI_Allreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), type, operation, all_),
           "MPI_Allreduce");
   }
+}
+
+// Announcements have a communicator of their own, so that no collective mixes with them. A rank looks for
+// them by MPI_Iprobe, which also lets MPI deliver messages while a rank computes. One-sided communication
+// would require no call of the receiver, but several implementations carry it out only when the receiver
+// calls MPI.
+void MpiCommunication::announce(std::uint64_t value) {
+  largest_announced_ = std::max(largest_announced_, value);
+  announced_.push_back(value);
+  for (int i = 1; i < size_; ++i) {
+    announcing_.push_back(MPI_REQUEST_NULL);
+    check(MPI_Isend(&announced_.back(), 1, MPI_UINT64_T, (rank_ + i) % size_, 0, announcements_,
+                    &announcing_.back()),
+          "MPI_Isend");
+  }
+}
+
+std::uint64_t MpiCommunication::announced() {
+  for (;;) {
+    int has_come = 0;
+    check(MPI_Iprobe(MPI_ANY_SOURCE, 0, announcements_, &has_come, MPI_STATUS_IGNORE), "MPI_Iprobe");
+    if (has_come == 0) return largest_announced_;
+    receive_announcement();
+  }
+}
+
+void MpiCommunication::receive_announcement() {
+  std::uint64_t value = 0;
+  check(MPI_Recv(&value, 1, MPI_UINT64_T, MPI_ANY_SOURCE, 0, announcements_, MPI_STATUS_IGNORE), "MPI_Recv");
+  ++num_received_;
+  largest_announced_ = std::max(largest_announced_, value);
+}
+
+// MPI requires that every message is received, so the ranks first receive the announcements that are still on
+// their way.
+MpiCommunication::~MpiCommunication() {
+  try {
+    std::array<std::uint64_t, 1> num_announced{announced_.size()};
+    sum(num_announced);
+    while (num_received_ < num_announced[0] - announced_.size()) receive_announcement();
+    check(MPI_Waitall(static_cast<int>(announcing_.size()), announcing_.data(), MPI_STATUSES_IGNORE),
+          "MPI_Waitall");
+  } catch (const std::exception&) {  // MPI has failed, and MPI_Finalize reports it
+  }
+  MPI_Comm_free(&announcements_);
+  MPI_Comm_free(&all_);
 }
 
 }  // namespace

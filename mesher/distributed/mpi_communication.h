@@ -22,9 +22,10 @@ class MpiSession {
 /// MPI's counts end at 2^31 - 1, so longer messages are sent in pieces.
 constexpr std::size_t kMostBytesOfMpiCall = std::size_t{1} << 30;
 
-/// Returns the communication of all processes of the run. Its messages do not mix with other messages of the
-/// processes. The session must outlive it. Its functions throw std::runtime_error with MPI's own text when a
-/// call fails. No call passes more than `most_bytes`, at least 8, to MPI.
+/// Returns the communication of all processes of the run. Collective, as is its destructor. Its messages do
+/// not mix with other messages of the processes. The session must outlive it. Its functions throw
+/// std::runtime_error with MPI's own text when a call fails. No call passes more than `most_bytes`, at least
+/// 8, to MPI.
 std::unique_ptr<Communication> mpi_communication(std::size_t most_bytes = kMostBytesOfMpiCall);
 
 /// Ends all processes of the run with this exit code. A rank that cannot continue calls it.

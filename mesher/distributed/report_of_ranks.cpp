@@ -177,8 +177,7 @@ PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, Meshin
   report.store_cells += part.store_cells;
   const auto perturbation = read_one<PerturbationReport>(reader);
   if (report.perturbation) add(perturbation, *report.perturbation);
-  const auto reason = read_one<StopReason>(reader);
-  if (report.stop_reason == StopReason::kComplete) report.stop_reason = reason;
+  report.stop_reason = std::max(report.stop_reason, read_one<StopReason>(reader));
   add(read_one<Guarantees>(reader), report.guarantees);
   const auto quality = read_one<Quality>(reader);
   if (is_first) report.quality = quality;

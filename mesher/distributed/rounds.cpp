@@ -108,6 +108,7 @@ class Rounds {
         checkpoints_(options.checkpoints),
         ranks_(ranks),
         stop_(stop),
+        end_(options.end),
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(grid_around(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size()))),
@@ -297,6 +298,7 @@ class Rounds {
       if (team_.log != nullptr) team_.log->begin_step();
       if (knows_seeds && leaves_) entries = refine_leaves(zone, entries, report);
       add_names(work_in(task, zone, entries, report), left);
+      if (end_ != nullptr && stop_.is_over()) end_->announce();
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
@@ -655,6 +657,7 @@ class Rounds {
   Checkpoints* const checkpoints_;  // null: none
   Communication& ranks_;
   StopControl& stop_;
+  EndOnAllRanks* const end_;  // null: a rank hears of others' ends between rounds
   Spending spending_{ranks_};
   const TwoLevels levels_;
   Construction construction_;

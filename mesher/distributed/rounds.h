@@ -17,6 +17,8 @@
 // Between rounds of R1 to R6 the ranks may write checkpoints (checkpoints.h). A resumed run has the vertices
 // of a checkpoint in place of the seeds, and applies PODM to all cells in its round 0.
 //
+// A limit or a signal that ends the work of one rank in a round soon ends that of all (end_on_all_ranks.h).
+//
 // After each of these exchanges the ranks compare what they have where they overlap (overlap.h).
 #pragma once
 
@@ -24,6 +26,7 @@
 #include "distributed/blocks.h"
 #include "distributed/checkpoints.h"
 #include "distributed/communication.h"
+#include "distributed/end_on_all_ranks.h"
 #include "distributed/spending.h"
 #include "distributed/vertex_source.h"
 #include "podm/operation_log.h"
@@ -61,6 +64,7 @@ struct DistributedOptions {
   Algorithm algorithm = Algorithm::kPodm;  ///< kPodm, or kPdr or kPdrPodm: leaves first, in round 0
   double leaf_size_mm = 0;                 ///< as in LeafOptions
   Checkpoints* checkpoints = nullptr;      ///< none: no checkpoint is written or resumed
+  EndOnAllRanks* end = nullptr;            ///< none: a rank hears of the ends of others between rounds
 };
 
 /// Refines the mesh on all ranks. Collective. All ranks have the same problem and options, and each has its

@@ -615,6 +615,14 @@ class EarlyEnds(OnRanks):
             for rank in ranks:
                 self.wait_for_end(rank)
 
+    def test_a_signal_to_one_rank_ends_all_in_their_first_round(self):
+        process, ranks = self.start(3)
+        os.kill(ranks[1], signal.SIGTERM)
+        stdout, stderr = process.communicate(timeout=120)
+        self.assert_ended_early(subprocess.CompletedProcess([], process.returncode, stdout, stderr), "cancelled")
+        first, = self.last_record()["ranks"]["rounds"]
+        self.assertLess(first["insertions"], 900_000, "each of three ranks would make 500,000")
+
     @slow
     def test_a_signal_to_all_ranks_ends_them_with_a_valid_mesh(self):
         process, ranks = self.start(2)

@@ -51,7 +51,13 @@ void RealTime::fail() {
 
 void RealTime::block(WorkerId self, double Overhead::*cause) {
   const auto start = Clock::now();
-  if (!is_over()) states_[self].resumed.acquire();
+  std::counting_semaphore<>& resumed = states_[self].resumed;
+  if (self != 0) {
+    if (!is_over()) resumed.acquire();
+  } else {  // it goes on observing, because no other thread may, and the wait may take seconds
+    constexpr auto kLongest = std::chrono::milliseconds(100);
+    while (!is_over() && !resumed.try_acquire_for(kLongest)) stop_.observe();
+  }
   states_[self].overhead.*cause += seconds_since(start);
   stop_.check_limits();  // the wait took the time of thousands of attempts
 }

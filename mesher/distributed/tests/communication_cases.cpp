@@ -144,4 +144,24 @@ void expect_barrier(Communication& communication) {
   }
 }
 
+void expect_announcements(Communication& communication, bool with_collectives) {
+  using Clock = std::chrono::steady_clock;
+  const int self = communication.rank(), last = communication.size() - 1;
+  const auto expect_heard = [&](std::uint64_t value) {
+    if (with_collectives) communication.barrier();
+    const auto deadline = Clock::now() + std::chrono::seconds(20);
+    while (communication.announced() < value && Clock::now() < deadline) std::this_thread::yield();
+    EXPECT_EQ(communication.announced(), value);
+    communication.barrier();  // until here no rank announces more
+  };
+  expect_heard(0);
+  if (self == last) communication.announce(7);
+  expect_heard(7);
+  if (self == 0) communication.announce(3);
+  expect_heard(7);
+  communication.announce(static_cast<std::uint64_t>(10 + self));
+  expect_heard(static_cast<std::uint64_t>(10 + last));
+  if (self == 0) communication.announce(100);
+}
+
 }  // namespace podm::test

@@ -13,5 +13,8 @@ void expect_lengths(Communication& communication, std::size_t most_bytes);
 void expect_one_message_per_rank(Communication& communication);
 /// Checks, on this machine's clock, that no rank goes on before the last rank has arrived.
 void expect_barrier(Communication& communication);
+/// Checks that the largest announced value reaches all ranks. Announcements need not arrive before a
+/// collective if they arrive `with_collectives`. The last ones are never looked for.
+void expect_announcements(Communication& communication, bool with_collectives);
 
 }  // namespace podm::test

@@ -56,6 +56,22 @@ TEST_P(InProcessRanks, WantOneMessagePerRank) { run_ranks(options(), test::expec
 
 TEST_P(InProcessRanks, NoneLeavesABarrierBeforeAllHaveCome) { run_ranks(options(), test::expect_barrier); }
 
+TEST_P(InProcessRanks, HearTheLargestAnnouncement) {
+  run_ranks(options(),
+            [](Communication& ranks) { test::expect_announcements(ranks, std::get<1>(GetParam())); });
+}
+
+// Otherwise the order of the ranks would decide which of them hears of it.
+TEST_P(SeveralRanks, HearNothingBeforeTheNextCollectiveIfOneComputesAtATime) {
+  if (!std::get<1>(GetParam())) return;
+  run_ranks(options(), [](Communication& ranks) {
+    if (ranks.rank() == 0) ranks.announce(5);
+    EXPECT_EQ(ranks.announced(), ranks.rank() == 0 ? 5u : 0u);
+    ranks.barrier();
+    EXPECT_EQ(ranks.announced(), 5u);
+  });
+}
+
 TEST_P(InProcessRanks, EachIsThereOnce) {
   std::vector<std::atomic<int>> times(static_cast<std::size_t>(options().num_ranks));
   run_ranks(options(), [&](Communication& ranks) {

@@ -35,8 +35,9 @@ struct LoggedRun {
   std::vector<LogOfRank> logs;
 };
 
-// One rank may be stopped before it begins, while the other ranks go on.
-LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
+// One rank may be stopped before it begins. The other ranks go on if one computes at a time, and otherwise
+// hear of it.
+LoggedRun run(const LoggedCase& of, int stopped_rank = -1, bool at_once = false) {
   const ScratchFolder folder;
   MeshingOptions options;
   options.sizes.radius_mm = of.radius_mm;
@@ -48,7 +49,7 @@ LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
   if (of.most_cells > 0) options.limits.max_elements = of.most_cells;
   LoggedRun result;
   result.logs.resize(static_cast<std::size_t>(of.num_ranks));
-  run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = true}, [&](Communication& ranks) {
+  run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = !at_once}, [&](Communication& ranks) {
     const std::string path = folder / (std::to_string(ranks.rank()) + ".log");
     OperationLogWriter log(path);
     MeshingOptions own = options;
@@ -117,8 +118,8 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
 
 TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
   const LoggedCase of{"", ball(20, 7), 1.2, 3};
-  for (const int stopped_rank : {0, 1}) {
-    const LoggedRun logged = run(of, stopped_rank);
+  for (const int stopped_rank : {0, 1, 2}) {
+    const LoggedRun logged = run(of, stopped_rank, stopped_rank == 2);
     EXPECT_EQ(logged.stop_reason, StopReason::kCancelled);
     EXPECT_EQ(verdict(logged.logs, of), "equal") << "rank " << stopped_rank;
     EXPECT_EQ(verdict_on_ranks(logged.logs, of), "equal") << "rank " << stopped_rank;

@@ -27,6 +27,10 @@ TEST(MpiCommunication, WantsOneMessagePerRank) { expect_one_message_per_rank(*mp
 
 TEST(MpiCommunication, NoRankLeavesABarrierBeforeAllHaveCome) { expect_barrier(*mpi_communication()); }
 
+TEST(MpiCommunication, AllRanksHearTheLargestAnnouncement) {
+  for (int i = 0; i < 3; ++i) expect_announcements(*mpi_communication(), false);
+}
+
 TEST(MpiCommunication, ItsClockGoesOn) {
   const auto communication = mpi_communication();
   const double start_s = communication->seconds();

@@ -84,6 +84,8 @@ class LosesAVertex : public Communication {
   void sum(std::span<std::uint64_t> values) override { ranks_.sum(values); }
   void maximum(std::span<std::uint64_t> values) override { ranks_.maximum(values); }
   void barrier() override { ranks_.barrier(); }
+  void announce(std::uint64_t value) override { ranks_.announce(value); }
+  std::uint64_t announced() override { return ranks_.announced(); }
   double seconds() const override { return ranks_.seconds(); }
   bool is_virtual() const override { return ranks_.is_virtual(); }
   RankReport report() const override { return ranks_.report(); }

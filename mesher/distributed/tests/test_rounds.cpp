@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <mutex>
+#include <optional>
 
 #include "delaunay/walk.h"
 #include "distributed/in_process_ranks.h"
@@ -31,6 +32,7 @@ struct Case {
   Algorithm algorithm = Algorithm::kPodm;
   int nodes = 1;  // computing nodes per rank
   double leaf_size_mm = 0;
+  std::optional<int> limited_rank = {};  // the only rank with limits; unset: all have them
 };
 
 class Ranks {
@@ -52,15 +54,18 @@ class Ranks {
           const Team team{.coordination = {.num_workers = of.threads},
                           .num_nodes = of.nodes,
                           .initial_workers = of.threads};
-          StopControl stop(limits, {}, [](std::uint64_t) {});
+          const bool is_limited = of.limited_rank.value_or(ranks.rank()) == ranks.rank();
+          EndOnAllRanks end(ranks, {});
+          StopControl stop(is_limited ? limits : Limits{}, end.token(), [&](std::uint64_t) { end.hear(); });
           const auto rank = static_cast<std::size_t>(ranks.rank());
           std::optional<Checkpoints> checkpoints;
           if (!checkpoint_options.folder.empty())
             checkpoints.emplace(checkpoint_options, std::vector<Fact>{}, ranks);
-          refined[rank].emplace(podm_distributed(*problem, team,
-                                                 {of.initial_ratio, of.cut_seed, of.algorithm,
-                                                  of.leaf_size_mm, checkpoints ? &*checkpoints : nullptr},
-                                                 ranks, stop));
+          refined[rank].emplace(
+              podm_distributed(*problem, team,
+                               {of.initial_ratio, of.cut_seed, of.algorithm, of.leaf_size_mm,
+                                checkpoints ? &*checkpoints : nullptr, &end},
+                               ranks, stop));
         });
   }
 
@@ -194,6 +199,21 @@ TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
     EXPECT_GT(whole->num_cells(), 6u);
     EXPECT_GT(insertions, 0u);
     EXPECT_GT(ranks.insertions_left(*whole), 0u);
+  }
+}
+
+// Without the limit the first round takes seconds.
+TEST(RoundsThatStop, EndOnAllRanksAtALimitOfOne) {
+  for (const int threads : {1, 2}) {
+    Case of{"", ball(24, 9), 0.22, 0, 3, threads};
+    of.at_once = true;
+    of.limited_rank = 1;
+    const Ranks ranks(of, 1, {.max_seconds = 0.2});
+    for (std::size_t rank = 0; rank < ranks.refined.size(); ++rank) {
+      const DistributedRefinement& refined = *ranks.refined[rank];
+      EXPECT_EQ(refined.refinement.stop_reason, rank == 1 ? StopReason::kTimeLimit : StopReason::kCancelled);
+      EXPECT_EQ(refined.rounds.size(), 1u);
+    }
   }
 }
 

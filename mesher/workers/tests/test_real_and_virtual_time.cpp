@@ -6,6 +6,8 @@
 #include <new>
 #include <random>
 #include <stdexcept>
+#include <stop_token>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -84,6 +86,19 @@ TYPED_TEST(Times, EndTheBlockingWhenTheRunIsOver) {
   });
   EXPECT_EQ(num_over, static_cast<int>(kThree));
   EXPECT_EQ(this->stop_.reason(), StopReason::kTimeLimit);
+}
+
+// All workers block until worker 0 observes that the run is over.
+TEST(RealTime, ObservesWhileWorker0Blocks) {
+  const auto caller = std::this_thread::get_id();
+  std::stop_source source;
+  StopControl stop{{}, source.get_token(), [&](std::uint64_t) {
+                     EXPECT_EQ(std::this_thread::get_id(), caller);
+                     source.request_stop();
+                   }};
+  RealTime time = OnThreads::make(stop);
+  time.run([&](WorkerId self) { time.block(self, &Overhead::begging_s); });
+  EXPECT_EQ(stop.reason(), StopReason::kCancelled);
 }
 
 TYPED_TEST(Times, ThrowAgainWhatAWorkerThrows) {
