@@ -102,6 +102,12 @@ void add_latency(CLI::App& program, int& exit_code) {
   app.callback([path, &exit_code] { exit_code = latency(*path); });
 }
 
+void add_sharing(CLI::App& program, int& exit_code) {
+  CLI::App& app =
+      *program.add_subcommand("sharing", "measure what cache lines and new pages cost that threads share");
+  app.callback([&exit_code] { exit_code = sharing(); });
+}
+
 void add_machine(CLI::App& program, int& exit_code) {
   const auto as_json = std::make_shared<bool>(false);
   CLI::App& app =
@@ -235,6 +241,7 @@ int main_or_throw(int argc, char** argv) {
   add_list(program, exit_code);
   add_verdicts(program, exit_code);
   add_latency(program, exit_code);
+  add_sharing(program, exit_code);
   add_machine(program, exit_code);
   add_compare(program, exit_code);
   add_pack(program, exit_code);

@@ -9,6 +9,10 @@ namespace podm::bench {
 /// to the file, or prints it if `record_path` is empty.
 int latency(const std::string& record_path);
 
+/// Measures the costs of cache lines and new pages that two threads share (sharing.h), and prints them as one
+/// line of JSON.
+int sharing();
+
 /// Prints the identity of this machine and a probe of its speed, as one line of JSON or as text.
 int show_machine(bool as_json);
 
