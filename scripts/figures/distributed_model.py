@@ -19,9 +19,10 @@ LEAST_CELLS_PER_RANK = 100e3  # with fewer cells most cells lie along the border
 NODES = (1, 8, 64)
 TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "edges": lambda n: n ** (-2 / 3),
          "once": lambda n: 1 / n}
-# The terms of each part. The image does not depend on the size.
+# The terms of each part. The image does not depend on the size. Ranks wait for those with more cells, and for the few
+# that have cells in the last rounds.
 MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "refine": ("volume", "surface"),
-         "later": ("surface", "edges"), "exchange": ("volume", "surface"), "waiting": ("volume", "surface"),
+         "later": ("surface", "edges"), "exchange": ("volume", "surface"), "waiting": ("volume", "edges"),
          "network": ("surface", "once"), "extract": ("volume", "surface")}
 REFINING_PARTS = (*REFINING, "waiting", "network")
 COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refining_efficiency",
