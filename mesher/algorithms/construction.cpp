@@ -11,6 +11,9 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
   timed(kAllocate, [&] {
     const int num_nodes = team.machine != nullptr ? team.machine->num_nodes() : 1;
     result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes);
+    if (team.log != nullptr)
+      order_ =
+          std::make_unique<CommitOrder>(*result_.mesh, *team.log, static_cast<std::size_t>(num_workers()));
     for (WorkerId worker = 0; worker < static_cast<WorkerId>(num_workers()); ++worker) {
       const Place place = place_of(worker);
       pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node),
@@ -74,7 +77,7 @@ void Construction::log(const Relocation& relocation) {
     const VertexId now = relocation.vertex_now(v);
     if (now == v) continue;
     const Point& p = mesh().point(now);
-    moves.operations.push_back({.sequence = team_.log->next_sequence(),
+    moves.operations.push_back({.sequence = 0,
                                 .point = {p.x, p.y, p.z},
                                 .vertex = now,
                                 .worker = 0,
@@ -82,7 +85,9 @@ void Construction::log(const Relocation& relocation) {
                                 .num_removed = 1});
     moves.removed.push_back(v);
   }
-  team_.log->append(moves);
+  std::uint64_t sequence = order_->next_between_operations(moves.operations.size());
+  for (LoggedOperation& move : moves.operations) move.sequence = sequence++;
+  order_->log().append(moves);
 }
 
 // Distinguishes a store without memory from one without cell numbers, which may have memory left.

@@ -13,11 +13,11 @@
 
 #include "algorithms/page_sampler.h"
 #include "algorithms/report_on_workers.h"
+#include "delaunay/commit_order.h"
 #include "delaunay/relocation.h"
 #include "geometry/dihedral.h"
 #include "podm/limits.h"
 #include "podm/meshing_report.h"
-#include "podm/operation_log.h"
 #include "refine/rules.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
@@ -107,6 +107,8 @@ class Construction {
   int num_workers() const { return team_.coordination.num_workers; }
   /// Every cell of the store.
   Entries all_cells() const;
+  /// The order of the commits in the team's log; null: there is no log.
+  CommitOrder* commit_order() { return order_.get(); }
 
   /// Keeps `bytes` of memory free of the store, instead of the amount kept before. Ends the run if the
   /// store already uses them.
@@ -119,7 +121,7 @@ class Construction {
     timed(phase, [&] {
       for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
         workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
-                                                          *pools_[id], team_.log, team_.owners));
+                                                          *pools_[id], order_.get(), team_.owners));
     });
     return workers;
   }
@@ -176,7 +178,7 @@ class Construction {
     });
     for (WorkerId self = 0; self < has_moved.size(); ++self)  // only starting workers allocates
       if (has_moved[self] == 0) relocation->move(self, *pools_[self]);
-    if (team_.log != nullptr) log(*relocation);
+    if (order_ != nullptr) log(*relocation);
     return relocation;
   }
   /// Accounts for the workers' counts and overhead in a phase that has ended.
@@ -220,6 +222,7 @@ class Construction {
   const Team& team_;
   StopControl& stop_;
   std::vector<std::unique_ptr<Pool>> pools_;  // workers keep them from phase to phase
+  std::unique_ptr<CommitOrder> order_;        // none: the team has no log
   std::vector<SampledAccesses> accesses_;     // accesses of each worker in the last phase
   Refinement result_;
   double charged_s_ = 0;  // the sum over all phases

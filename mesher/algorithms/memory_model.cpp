@@ -35,12 +35,12 @@ std::uint64_t memory_of_run(const Limits& limits) {
   return limits.max_memory_bytes > 0 ? limits.max_memory_bytes : physical_memory_bytes();
 }
 
-std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor) {
+std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor, bool has_log) {
   const std::uint64_t of_workers =
       executor == Executor::kVirtual ? num_workers * kBytesPerWorker : bytes_of_threads(num_workers);
+  const std::uint64_t bytes_per_cell = kBytesPerStoredCell + (has_log ? kStampBytesPerStoredCell : 0);
   const auto fits = [&](std::uint64_t cells) {
-    return of_workers + PoorElementList::stale_bytes(cells, num_workers) + cells * kBytesPerStoredCell <=
-           bytes;
+    return of_workers + PoorElementList::stale_bytes(cells, num_workers) + cells * bytes_per_cell <= bytes;
   };
   std::uint64_t cells = kLeastCells;
   for (std::uint64_t step = std::bit_floor(kMostStoredCells); step > 0; step /= 2)

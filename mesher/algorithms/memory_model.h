@@ -38,6 +38,8 @@ inline constexpr std::uint64_t kBytesPerSmoothedVoxel = 4;
 /// cleaning, and the additional memory of extraction.
 inline constexpr std::uint64_t kBytesPerStoredCell =
     sizeof(Cell) + sizeof(Vertex) / 4 + PoorElementList::kGrowth * sizeof(PoorElementList::Entry) + 4;
+/// The stamp of a quarter of a vertex, in a run with a log.
+inline constexpr std::uint64_t kStampBytesPerStoredCell = sizeof(std::uint64_t) / 4;
 /// Each cube of the octree, leaf or gap, takes kBytesPerCube. A leaf takes kBytesPerLeaf in addition: its
 /// place in the queue, and its list of cells with some entries. While the octree is built each cube takes
 /// less than both together.
@@ -54,6 +56,7 @@ std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes
 /// all memory of the machine.
 std::uint64_t memory_of_run(const Limits& limits);
 /// Returns the largest number of cells for which a store, its workers and their lists stay within `bytes`.
-std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor);
+/// With a log, every vertex also has a stamp (delaunay/commit_order.h).
+std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor, bool has_log);
 
 }  // namespace podm

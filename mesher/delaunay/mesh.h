@@ -263,6 +263,7 @@ class Mesh {
   CellId cell_bound() const { return cell_ids_.bound(); }
   VertexId vertex_bound() const { return vertex_ids_.bound(); }
   std::size_t cell_capacity() const { return cells_.capacity(); }
+  std::size_t vertex_capacity() const { return vertices_.capacity(); }
   double extent() const { return extent_; }  // the largest absolute coordinate, M of circumsphere.h
   const Box& box() const { return box_; }
 

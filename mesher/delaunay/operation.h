@@ -20,6 +20,7 @@
 
 #include "delaunay/hole.h"
 #include "delaunay/mesh.h"
+#include "delaunay/pool.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
 #include "delaunay/vertex_move.h"
@@ -133,6 +134,7 @@ class Operation {
   /// The worker adds its own counts here.
   Counters& counters() { return counters_; }
   const Counters& counters() const { return counters_; }
+  SharedRequests shared_requests() const { return pool_.requests(); }
   /// The number of cells made minus the number of cells removed, over all commits.
   std::int64_t net_cells() const { return net_cells_; }
 

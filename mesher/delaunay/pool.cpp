@@ -17,12 +17,18 @@ void reserve_more(std::vector<T>& vector, std::size_t count) {
 
 void FreeIds::reserve(std::size_t wanted, std::size_t released) {
   reserve_more(free_, std::max<std::size_t>(released, wanted) + 2 * block_);
-  if (foreign_.size() >= block_) arena_.give_back(foreign_);
+  if (foreign_.size() >= block_) {
+    ++num_locks_;
+    arena_.give_back(foreign_);
+  }
   reserve_more(foreign_, released);
   while (free_.size() + (end_ - next_) < wanted) {
+    ++num_locks_;
     if (arena_.take_returned(block_, node_, free_)) continue;
     for (; next_ != end_; ++next_) free_.push_back(next_);
+    ++num_locks_;
     next_ = arena_.take(block_, node_);
+    num_new_ += block_;
     end_ = next_ + block_;
   }
 }

@@ -1,12 +1,23 @@
 // Pools of unused ids, from which a worker makes cells and vertices in the memory of its own NUMA node.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "delaunay/id_arena.h"
 #include "delaunay/mesh.h"
 
 namespace podm {
+
+/// Requests by a worker of what all workers share.
+struct SharedRequests {
+  std::uint64_t locks = 0;      ///< of an arena's mutex, for blocks of ids
+  std::uint64_t new_bytes = 0;  ///< memory that no worker has touched before
+
+  SharedRequests operator+(const SharedRequests& b) const {
+    return {locks + b.locks, new_bytes + b.new_bytes};
+  }
+};
 
 /// Unused ids of one kind: first the ids that the worker released (warm in its cache), then blocks from the
 /// arena. Ids of other nodes return home through the arena, so a node's cells stay in its own memory.
@@ -23,13 +34,16 @@ class FreeIds {
   void reserve(std::size_t wanted, std::size_t released);
   std::uint32_t take();
   void release(std::uint32_t id) { (is_own(id) ? free_ : foreign_).push_back(id); }
+  /// The requests so far, for ids of items of this size.
+  SharedRequests requests(std::size_t item_bytes) const { return {num_locks_, num_new_ * item_bytes}; }
 
  private:
   IdArena& arena_;
   NodeIndex node_;
   std::uint32_t block_;  // ids taken at once
   std::vector<std::uint32_t> free_, foreign_;
-  std::uint32_t next_ = 0, end_ = 0;  // the rest of the current block
+  std::uint32_t next_ = 0, end_ = 0;           // the rest of the current block
+  std::uint64_t num_locks_ = 0, num_new_ = 0;  // requests to the arena, and ids in its blocks
 };
 
 /// One worker's cells and vertices.
@@ -56,6 +70,9 @@ class Pool {
   void release_cell(CellId c) { cells_.release(c); }
   VertexId take_vertex() { return vertices_.take(); }
   void release_vertex(VertexId v);
+  SharedRequests requests() const {
+    return cells_.requests(sizeof(Cell)) + vertices_.requests(sizeof(Vertex));
+  }
 
  private:
   Mesh& mesh_;

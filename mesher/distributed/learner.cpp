@@ -32,8 +32,8 @@ struct Learner::Batch {
 template <class Locks>
 class Learner::OnThread {
  public:
-  OnThread(Mesh& mesh, Pool& pool, WorkerId self, OperationLogWriter* log)
-      : mesh_(mesh), operation_(mesh, pool, self), self_(self), log_(log) {}
+  OnThread(Mesh& mesh, Pool& pool, WorkerId self, CommitOrder* order)
+      : mesh_(mesh), operation_(mesh, pool, self), self_(self), order_(order) {}
 
   /// Makes the changes order[begin..end) of the batch. Those that meet another thread's lock are put off.
   void learn(const Batch& batch, std::size_t begin, std::size_t end) try {
@@ -53,7 +53,7 @@ class Learner::OnThread {
   std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
 
   void flush_log() {
-    if (log_ != nullptr) log_->append(unlogged_);
+    if (order_ != nullptr) order_->log().append(unlogged_);
     unlogged_ = {};
   }
   std::vector<std::size_t> take_put_off() { return std::exchange(put_off_, {}); }
@@ -133,12 +133,12 @@ class Learner::OnThread {
 
   // Logs under the locks, so that another thread's later change has a later number.
   void note(const LearntVertex& change, std::uint32_t logged_kind) {
-    if (log_ == nullptr) return;
+    if (order_ == nullptr) return;
     const bool is_gone = change.kind == VertexKind::kUnused;
     const VertexId vertex = is_gone ? operation_.removed().front() : operation_.inserted();
     const Point& p = change.point;
     unlogged_.operations.push_back(
-        {.sequence = log_->next_sequence(),
+        {.sequence = order_->next(self_, operation_.created(), operation_.removed()),
          .point = {p.x, p.y, p.z},
          .vertex = vertex,
          .worker = self_,
@@ -154,7 +154,7 @@ class Learner::OnThread {
   std::vector<std::size_t> put_off_;
   bool lists_made_ = false;
   std::vector<CellId> made_;
-  OperationLogWriter* log_;
+  CommitOrder* order_;
   OperationBatch unlogged_;
 };
 
@@ -194,9 +194,11 @@ Learner::Learner(Construction& construction, const CubeGrid& grid)
       log_(construction.team().log),
       threads_(static_cast<std::size_t>(construction.num_workers())),
       finders_pool_(construction.pool(0)),
-      alone_(std::make_unique<OnThread<NoLocks>>(mesh_, construction.pool(0), 0, log_)) {
+      alone_(
+          std::make_unique<OnThread<NoLocks>>(mesh_, construction.pool(0), 0, construction.commit_order())) {
   for (WorkerId id = 0; threads_ > 1 && id < threads_; ++id)
-    together_.push_back(std::make_unique<OnThread<VertexLocks>>(mesh_, construction.pool(id), id, log_));
+    together_.push_back(std::make_unique<OnThread<VertexLocks>>(mesh_, construction.pool(id), id,
+                                                                construction.commit_order()));
 }
 
 Learner::~Learner() = default;

@@ -195,11 +195,11 @@ struct OperationLogWriter::File {
 OperationLogWriter::OperationLogWriter(const std::string& path) : file_(std::make_unique<File>(path)) {}
 OperationLogWriter::~OperationLogWriter() = default;
 
-void OperationLogWriter::begin_step() { sequence_ = (step_of(sequence_) + 1) << kBitsInStep; }
+void OperationLogWriter::begin_step() { least_sequence_ = (step_of(least_sequence_) + 1) << kBitsInStep; }
 
 void OperationLogWriter::restart() {
   file_->open();
-  sequence_ = 0;
+  least_sequence_ = 0;
 }
 
 void OperationLogWriter::append(const OperationBatch& batch) {

@@ -23,7 +23,7 @@ std::optional<CountedReads> Worker<Locks>::reads_for(std::optional<AccessTally>&
 
 template <class Locks>
 Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
-                      Pool& pool, OperationLogWriter* log, const ImageOwners* owners)
+                      Pool& pool, CommitOrder* order, const ImageOwners* owners)
     : mesh_(mesh),
       accesses_(tally_for(mesh)),
       isosurface_(isosurface),
@@ -34,9 +34,9 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       poor_(mesh.cell_capacity()),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),
-      log_(log) {
-  if (log_ != nullptr) unlogged_.operations.reserve(kOperationsToFlush);
-  if (log_ != nullptr) unlogged_.removed.reserve(kOperationsToFlush);
+      order_(order) {
+  if (order_ != nullptr) unlogged_.operations.reserve(kOperationsToFlush);
+  if (order_ != nullptr) unlogged_.removed.reserve(kOperationsToFlush);
 }
 
 template <class Locks>
@@ -200,7 +200,7 @@ Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
 
 template <class Locks>
 void Worker<Locks>::record_commit(const Point& p, VertexKind kind) {
-  if (log_ != nullptr) log(p, kind);
+  if (order_ != nullptr) log(p, kind);
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
 }
@@ -225,14 +225,14 @@ void Worker<Locks>::list_created() {
 // Runs before the commit, so that no operation is missing from the log when memory runs out.
 template <class Locks>
 void Worker<Locks>::make_room_in_log() {
-  if (log_ == nullptr) return;
+  if (order_ == nullptr) return;
   unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
 }
 
 template <class Locks>
 void Worker<Locks>::log(const Point& p, VertexKind kind) {
   const auto& removed = operation_.removed();
-  unlogged_.operations.push_back({log_->next_sequence(),
+  unlogged_.operations.push_back({order_->next(self_, operation_.created(), removed),
                                   {p.x, p.y, p.z},
                                   operation_.inserted(),
                                   self_,
@@ -243,8 +243,8 @@ void Worker<Locks>::log(const Point& p, VertexKind kind) {
 
 template <class Locks>
 void Worker<Locks>::flush_log() {
-  if (log_ == nullptr) return;
-  log_->append(unlogged_);
+  if (order_ == nullptr) return;
+  order_->log().append(unlogged_);
   unlogged_.operations.clear();
   unlogged_.removed.clear();
 }

@@ -36,7 +36,10 @@ class PoorElementList {
   /// Throws std::bad_alloc.
   void push(CellId cell, std::uint16_t stamp) {
     if (end_ % kChunk == 0) {
-      if (end_ == chunks_.size() << kChunkBits) chunks_.emplace_back();
+      if (end_ == chunks_.size() << kChunkBits) {
+        chunks_.emplace_back();
+        ++num_mapped_;
+      }
       top_ = &at(end_);
     }
     top_[end_++ % kChunk] = {cell, stamp};
@@ -69,6 +72,8 @@ class PoorElementList {
   }
   bool is_empty() const { return begin_ == end_; }
   std::size_t size() const { return end_ - begin_; }
+  /// Bytes that the list has asked of the system so far.
+  std::uint64_t mapped_bytes() const { return num_mapped_ * kChunk * sizeof(Entry); }
   /// Returns the entry whose turn comes `turns` from now, or the oldest entry of a shorter list, for
   /// prefetching. The list must not be empty.
   Entry upcoming(std::size_t turns) const {
@@ -112,6 +117,7 @@ class PoorElementList {
 
   std::size_t first_cleaning_;
   std::vector<Chunk> chunks_;
+  std::uint64_t num_mapped_ = 0;
   std::size_t begin_ = 0, end_ = 0;  // positions of the oldest entry and of the next one to be pushed
   Entry* top_ = nullptr;             // the chunk of position end_, unless a chunk begins there
   std::size_t next_cleaning_ = first_cleaning_;

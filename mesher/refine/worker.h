@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "delaunay/commit_order.h"
 #include "delaunay/operation.h"
-#include "podm/operation_log.h"
 #include "refine/homes.h"
 #include "refine/outcome.h"
 #include "refine/perturbation.h"
@@ -17,11 +17,11 @@ namespace podm {
 template <class Locks>
 class Worker {
  public:
-  /// `log`, if given, receives every commit. Accesses to the mesh are counted if the workers share a mesh
-  /// that lies on several nodes, and reads of the image are counted, too, if its `owners` are given and
-  /// known.
+  /// The log of `order`, if given, receives every commit. Accesses to the mesh are counted if the workers
+  /// share a mesh that lies on several nodes, and reads of the image are counted, too, if its `owners` are
+  /// given and known.
   Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self, Pool& pool,
-         OperationLogWriter* log = nullptr, const ImageOwners* owners = nullptr);
+         CommitOrder* order = nullptr, const ImageOwners* owners = nullptr);
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
@@ -83,6 +83,10 @@ class Worker {
   const Counters& counters() const { return operation_.counters(); }
   /// None if accesses are not counted.
   const std::optional<AccessTally>& accesses() const { return accesses_; }
+  /// Requests so far by this worker, for its cells, vertices and list.
+  SharedRequests shared_requests() const {
+    return operation_.shared_requests() + SharedRequests{.new_bytes = poor_.mapped_bytes()};
+  }
   /// The number of cells that this worker has added to the mesh, net.
   std::int64_t net_cells() const { return operation_.net_cells(); }
 
@@ -133,7 +137,7 @@ class Worker {
   std::vector<Kept> kept_;
   double min_distance_;
   WorkerId self_;
-  OperationLogWriter* log_;
+  CommitOrder* order_;
   OperationBatch unlogged_;
 };
 

@@ -116,16 +116,17 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
   announce("refine", 0, 0);
   const auto num_workers = static_cast<std::uint64_t>(team_.size().num_workers);
   const std::uint64_t bytes = memory_of_run(options_.limits);
-  const Problem problem{.isosurface = *isosurface_,
-                        .object = object_,
-                        .delta_mm = sizes.delta_mm,
-                        .sizes = *size_field_,
-                        .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor),
-                        .memory_bytes = bytes,
-                        .dihedral_bounds = dihedral_bounds(),
-                        .observe_perturbation = [&](double fraction, std::uint64_t cells) {
-                          announce("perturb", fraction, cells);
-                        }};
+  const Problem problem{
+      .isosurface = *isosurface_,
+      .object = object_,
+      .delta_mm = sizes.delta_mm,
+      .sizes = *size_field_,
+      .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor, options_.log != nullptr),
+      .memory_bytes = bytes,
+      .dihedral_bounds = dihedral_bounds(),
+      .observe_perturbation = [&](double fraction, std::uint64_t cells) {
+        announce("perturb", fraction, cells);
+      }};
   refine(problem, team_.team(), stop_control);
 }
 

@@ -233,6 +233,11 @@ TEST_F(Schedules, FindThatThreeLocksAreTooFewToMove) {
   expect_found();
 }
 
+TEST_F(Schedules, FindThatTheNumberOfACommitMustNotDependOnItsWorkerAlone) {
+  plant_fault({.to_order = 0});
+  expect_found();
+}
+
 TEST_F(Schedules, RepeatForTheSameSeed) {
   for (int seed = 0; seed < 6; ++seed) {
     std::vector<std::array<VertexId, 4>> cells[2];

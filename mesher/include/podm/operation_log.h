@@ -1,6 +1,7 @@
 // The linearization log: every committed operation with a sequence number taken while its locks were held.
-// One thread that replays it in that order (podm replay) must get a bitwise equal mesh. This proves that a
-// run of many workers equals a serial run.
+// Operations with a common vertex have numbers in the order of their commits (delaunay/commit_order.h). One
+// thread that replays all operations by number (podm replay) must get a bitwise equal mesh. This proves that
+// a run of many workers equals a serial run.
 //
 // On ranks that share no memory each rank has its own log, with its own vertex numbers. The log also holds
 // the vertices that the rank learns from other ranks. Sequence numbers include the step; all ranks take steps
@@ -12,7 +13,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,7 +41,7 @@ std::string operation_text(std::uint64_t sequence);
 /// An inserted isosurface point or circumcenter together with the removed vertices. Or a new id of a vertex:
 /// the removed id is called `vertex` from now on.
 struct LoggedOperation {
-  std::uint64_t sequence = 0;     ///< order of the commits of a run; gaps are allowed
+  std::uint64_t sequence = 0;     ///< order of the commits of a run, with gaps
   std::array<double, 3> point{};  ///< mm, working frame
   std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are reused
   std::uint32_t worker = 0;
@@ -93,8 +93,11 @@ class OperationLogWriter {
   /// Must be called between operations. Later operations of this rank follow all operations of any rank in
   /// earlier steps.
   void begin_step();
-  /// Any worker may call it at any time.
-  std::uint64_t next_sequence() { return sequence_.fetch_add(1, std::memory_order_relaxed); }
+  /// The least number of an operation that begins now. Only begin_step(), set_least_sequence() and restart()
+  /// change it.
+  std::uint64_t least_sequence() const { return least_sequence_; }
+  /// Must be called between operations.
+  void set_least_sequence(std::uint64_t least) { least_sequence_ = least; }
   void append(const OperationBatch& batch);
   /// Removes all operations, for a run that starts again.
   void restart();
@@ -107,9 +110,7 @@ class OperationLogWriter {
  private:
   struct File;
   std::unique_ptr<File> file_;
-  // Relaxed order suffices. A worker that takes the number of a later operation on the same vertices holds
-  // their locks. It therefore comes after the release by the earlier holder, and fetch_add keeps that order.
-  std::atomic<std::uint64_t> sequence_ = 0;
+  std::uint64_t least_sequence_ = 0;
 };
 
 /// Returns a hash of the voxels of the selected labels and of the affine, on which a mesh depends.
