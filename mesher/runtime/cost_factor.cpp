@@ -15,14 +15,17 @@ constexpr double kMostFactor = 1e3;
 struct NamedConstant {
   const char* name;
   double MachineModel::*member;
+  double usual = 0;  // multiplied where the machine has 0
 };
 // core_speed must not be 0, as work would never end. A hop_latency of 0 keeps the order of hops.
-constexpr std::array<NamedConstant, 6> kOfMachine{{{"core_speed", &MachineModel::core_speed},
+constexpr std::array<NamedConstant, 8> kOfMachine{{{"core_speed", &MachineModel::core_speed},
                                                    {"hop_latency", &MachineModel::hop_latency_s},
                                                    {"miss_share", &MachineModel::miss_share},
                                                    {"retries", &MachineModel::retries},
                                                    {"wake", &MachineModel::wake_s},
-                                                   {"lock", &MachineModel::lock_s}}};
+                                                   {"lock", &MachineModel::lock_s},
+                                                   {"line_transfer", &MachineModel::line_transfer_s, 100e-9},
+                                                   {"page_fault", &MachineModel::page_fault_s, 1e-6}}};
 // The time that an access keeps a hub or a router busy. The first num_nodes() stations are hubs.
 constexpr const char *kHubService = "hub_service", *kRouterService = "router_service";
 
@@ -60,7 +63,8 @@ CostFactor CostFactor::parse(const std::string& text) {
 
 void CostFactor::apply_to(MachineModel& machine) const {
   for (const auto& constant : kOfMachine)
-    if (name == constant.name) machine.*constant.member *= factor;
+    if (double& value = machine.*constant.member; name == constant.name)
+      value = factor * (value > 0 ? value : constant.usual);
   for (const auto& constant : kTimeCosts)
     if (name == constant.name) machine.costs.*constant.member *= factor;
   const auto num_hubs = static_cast<std::size_t>(machine.num_nodes());

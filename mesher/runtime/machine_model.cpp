@@ -181,6 +181,8 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
   TomlSection system = file.table("system");
   const double wake_us = system.number("wake_us", 0, kMostMicroseconds);
   const double lock_us = system.number("lock_us", 0, kMostMicroseconds);
+  const double line_transfer_ns = system.number("line_transfer_ns", 0, 0, kMostMicroseconds);
+  const double page_fault_us = system.number("page_fault_us", 0, 0, kMostMicroseconds);
   system.done();
   file.done();
   if (network.num_nodes * processors.sockets * processors.cores_per_socket > kMostProcessors)
@@ -200,7 +202,9 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
           .routes = routes,
           .retries = network.retries,
           .wake_s = wake_us * 1e-6,
-          .lock_s = lock_us * 1e-6};
+          .lock_s = lock_us * 1e-6,
+          .line_transfer_s = line_transfer_ns * 1e-9,
+          .page_fault_s = page_fault_us * 1e-6};
 } catch (const TomlError& error) {
   throw TopologyError(error.what());
 }

@@ -40,9 +40,13 @@ struct MachineModel {
   double miss_share = 0;  ///< share of the counted accesses to other nodes' memory that no cache answers
   std::vector<Station> stations = {};         ///< the hubs by node, then the routers
   std::vector<std::vector<int>> routes = {};  ///< indexed by node and owner's node, in rows
-  double retries = 0;    ///< each access that waits at a station lengthens the service there by this share
-  double wake_s = 0;     ///< until a sleeping thread runs again
-  double lock_s = 0;     ///< to take and release a mutex that no thread holds
+  double retries = 0;  ///< each access that waits at a station lengthens the service there by this share
+  double wake_s = 0;   ///< until a sleeping thread runs again
+  double lock_s = 0;   ///< to take and release a mutex that no thread holds
+  /// For a cache line that many threads write to pass from one of them to another.
+  double line_transfer_s = 0;
+  /// For the system to provide a page of 4 KiB at its first touch.
+  double page_fault_s = 0;
   TimeCosts costs = {};  ///< of work; studies of the model multiply one by a factor (cost_factor.h)
 
   int num_nodes() const { return topology.num_nodes(); }

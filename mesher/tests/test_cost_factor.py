@@ -42,6 +42,14 @@ class CostFactor(PodmTestCase):
                     doubled = self.record("--cost-factor", f"{name}=2")["virtual"][what][phase]
                     self.assertAlmostEqual(doubled, 2 * plain[what][phase], places=15)
 
+    def test_shared_lines_and_new_pages_cost_nothing_unless_asked_for(self):
+        plain = self.record()["virtual"]["worker_s"]
+        for name in ("line_transfer", "page_fault"):
+            with self.subTest(name=name):
+                self.assertEqual(self.record("--cost-factor", f"{name}=0")["virtual"]["worker_s"], plain)
+                more = self.record("--cost-factor", f"{name}=8")["virtual"]["worker_s"]
+                self.assertGreater(more["locks"] + more["between_attempts"], plain["locks"] + plain["between_attempts"])
+
     def test_what_has_no_constants_is_refused(self):
         for arguments in (["--executor", "virtual"], ["--topology", BLACKLIGHT]):
             process = self.run_with("--cost-factor", "wake=2", "--oversubscribe", *arguments)

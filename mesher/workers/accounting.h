@@ -10,13 +10,15 @@
 //   at a time. The wrapped object identifies the section.
 //
 // The rules are part of the frozen model. A change of a rule, of the worker that is charged, or of the order
-// of a charge and its operation makes another version of the model.
+// of a charge and its operation makes another version of the model. The rules of shared lines and new memory
+// came later. They charge nothing on machines without their constants, whose results they leave as they were.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <random>
 
+#include "delaunay/pool.h"
 #include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/time_costs.h"
@@ -56,6 +58,35 @@ inline double seconds_before_locks(const TimeCosts& costs) { return costs.list_l
 /// together.
 inline double draw_stretch(const TimeCosts& costs, std::mt19937_64& random) {
   return std::uniform_real_distribution(1 - costs.spread, 1 + costs.spread)(random);
+}
+
+// ---- Shared lines and new memory, during an attempt ----
+//
+// A cache line that all workers write is a section. It charges MachineModel::line_transfer_s to a worker if
+// another one was the last to enter it. Such lines are the mutex of each section, the mutex of the arenas of
+// ids, and the number of cells (StopControl). A conflict takes one transfer: of the lock that another worker
+// holds. The system provides new memory in another section, where each page takes
+// MachineModel::page_fault_s. Commits share no line (delaunay/commit_order.h).
+
+inline constexpr std::uint64_t kPageBytes = 4096;
+
+/// Returns the requests so far by a worker that makes cells; none by other workers.
+template <class Worker>
+SharedRequests shared_requests_of(const Worker& worker) {
+  if constexpr (requires { worker.shared_requests(); })
+    return worker.shared_requests();
+  else
+    return {};
+}
+
+/// Uses by an attempt of what all workers share.
+struct SharedUse {
+  std::uint64_t locks_of_ids = 0, new_pages = 0;
+  bool reports_cells = false;
+};
+inline SharedUse shared_use(const SharedRequests& before, const SharedRequests& now, bool reports_cells) {
+  return {now.locks - before.locks, now.new_bytes / kPageBytes - before.new_bytes / kPageBytes,
+          reports_cells};
 }
 
 // ---- Between attempts ----

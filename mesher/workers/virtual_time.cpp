@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <new>
+#include <utility>
 
 #include "podm/errors.h"
 #include "runtime/processor_seconds.h"
@@ -23,6 +25,8 @@ VirtualTime::VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost
   speed_ = machine->speed_of_one_of(num_workers);
   wake_s_ = machine->wake_s;
   lock_s_ = machine->lock_s;
+  line_transfer_s_ = machine->line_transfer_s;
+  page_fault_s_ = machine->page_fault_s;
   if (machine->topology.num_nodes() > 1) remote_.emplace(*machine, std::move(nodes));
 }
 
@@ -105,7 +109,7 @@ void VirtualTime::begin_attempt(WorkerId self) {
 }
 
 void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::optional<AccessTally>& accesses,
-                              Outcome outcome) {
+                              Outcome outcome, const SharedUse& use) {
   WorkerState& state = states_[self];
   state.most_steps = 0;
   state.fibre->allow(Fibre::kUnlimited);
@@ -114,7 +118,8 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   const double work_s = has_failed ? std::max(0.0, whole_s - unlocked_seconds()) : whole_s;
   RemoteMemory::Delay remote;
   if (remote_ && accesses) remote = remote_->delay(self, *accesses, state.since_s);
-  schedule(self, kIsInParts ? 0 : work_s + remote.latency_s + remote.network_s);
+  const double sharing_s = sharing_seconds(self, use, outcome);
+  schedule(self, kIsInParts ? 0 : work_s + remote.latency_s + remote.network_s + sharing_s);
   if (!is_over()) state.fibre->suspend();
   if (has_failed) {
     state.overhead.rollback_s += now_s_ - state.since_s;
@@ -123,6 +128,38 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
     spending_.remote_memory_s += remote.latency_s;
     spending_.network_s += remote.network_s;
   }
+}
+
+// True if a worker in real time would report its cells at the end of this attempt.
+bool VirtualTime::reports_cells(WorkerId self, std::int64_t net_cells) {
+  WorkerState& state = states_[self];
+  if (++state.num_attempts % StopControl::kAttemptsBetweenChecks != 0 ||
+      std::abs(net_cells - state.reported_cells) < stop_.reporting_step(states_.size()))
+    return false;
+  state.reported_cells = net_cells;
+  return true;
+}
+
+// The worker arrives at the section in `after_s` seconds. Returns the seconds from now until it leaves.
+double VirtualTime::enter(Section& section, WorkerId self, double after_s, double inside_s) {
+  if (std::exchange(section.last, self) != self) inside_s += line_transfer_s_;
+  const double arrival_s = now_s_ + after_s;
+  const double wait_s = std::max(0.0, section.free_at_s - arrival_s);
+  spending_.queueing_s += wait_s;
+  spending_.between_s += inside_s;
+  section.free_at_s = arrival_s + wait_s + inside_s;
+  return section.free_at_s - now_s_;
+}
+
+// The attempt enters one section after the other at its beginning, as it does stations (remote_memory.h).
+double VirtualTime::sharing_seconds(WorkerId self, const SharedUse& use, Outcome outcome) {
+  if (line_transfer_s_ == 0 && page_fault_s_ == 0) return 0;
+  double seconds = outcome == Outcome::kLockConflict ? line_transfer_s_ : 0;
+  for (std::uint64_t i = 0; i < use.locks_of_ids; ++i) seconds = enter(ids_, self, seconds, 0);
+  if (use.new_pages > 0)
+    seconds = enter(memory_map_, self, seconds, page_fault_s_ * static_cast<double>(use.new_pages));
+  if (use.reports_cells) seconds = enter(num_cells_, self, seconds, 0);
+  return seconds;
 }
 
 // Spends the part of a failed attempt in which a real attempt holds no locks yet.
@@ -157,13 +194,7 @@ void VirtualTime::spend(WorkerId self, double reference_s) {
 }
 
 void VirtualTime::spend_in(const void* section, WorkerId self, double reference_s) {
-  double& free_at_s = free_at_[section];
-  const double wait_s = std::max(0.0, free_at_s - now_s_);
-  const double inside_s = lock_s_ + reference_s / speed_;
-  spending_.queueing_s += wait_s;
-  spending_.between_s += inside_s;
-  free_at_s = now_s_ + wait_s + inside_s;
-  pass(self, free_at_s - now_s_);
+  pass(self, enter(sections_[section], self, 0, lock_s_ + reference_s / speed_));
 }
 
 void VirtualTime::schedule(WorkerId worker, double delay_s) {

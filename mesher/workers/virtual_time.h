@@ -38,7 +38,7 @@ struct VirtualSpending {
   double work_s = 0;           ///< attempts, for their counted work
   double remote_memory_s = 0;  ///< attempts, for the way to the memory of other nodes
   double network_s = 0;        ///< attempts, waiting where the network is busy
-  double between_s = 0;        ///< between attempts: lists, gifts, leaves
+  double between_s = 0;        ///< between attempts: lists, gifts, leaves; also shared lines and new memory
   double queueing_s = 0;       ///< waiting for sections that admit one worker at a time
 
   VirtualSpending& operator+=(const VirtualSpending& b);
@@ -61,10 +61,13 @@ class VirtualTime {
     const WorkerId self = worker.id();
     begin_attempt(self);
     const Work before = work_of(worker.counters());
+    const SharedRequests asked_before = shared_requests_of(worker);
     const Outcome outcome = worker.attempt();
+    const bool reports = reports_cells(self, worker.net_cells());
     states_[self].meter.report(worker, stop_);
     if (kIsInParts) worker.release();
-    end_attempt(self, work_of(worker.counters()) - before, worker.accesses(), outcome);
+    end_attempt(self, work_of(worker.counters()) - before, worker.accesses(), outcome,
+                shared_use(asked_before, shared_requests_of(worker), reports));
     worker.release();
     if (outcome == Outcome::kLockConflict) pass_unlocked(self);
     return outcome;
@@ -111,7 +114,13 @@ class VirtualTime {
     double since_s = 0;            // the beginning of its attempt
     std::uint64_t most_steps = 0;  // of one part of its attempt, at most; 0 outside of attempts
     CellMeter meter;
+    std::uint64_t num_attempts = 0;
+    std::int64_t reported_cells = 0;  // as a real worker reports them
     Overhead overhead;
+  };
+  struct Section {
+    double free_at_s = 0;       // the time when the last worker leaves it
+    WorkerId last = kNoWorker;  // to enter it
   };
   struct Event {
     double time_s;
@@ -125,7 +134,10 @@ class VirtualTime {
   double reference_seconds(const Work& work) const;
   void begin_attempt(WorkerId self);
   void end_attempt(WorkerId self, const Work& work, const std::optional<AccessTally>& accesses,
-                   Outcome outcome);
+                   Outcome outcome, const SharedUse& use);
+  bool reports_cells(WorkerId self, std::int64_t net_cells);
+  double enter(Section& section, WorkerId self, double after_s, double inside_s);
+  double sharing_seconds(WorkerId self, const SharedUse& use, Outcome outcome);
   void pass_unlocked(WorkerId self);
   double unlocked_seconds() const;
   void pass(WorkerId self, double seconds);
@@ -137,9 +149,10 @@ class VirtualTime {
   StopControl& stop_;
   VirtualCost cost_;
   TimeCosts costs_;
-  double speed_ = 1, wake_s_ = 0, lock_s_ = 0;  // of the machine's cores and system
-  std::optional<RemoteMemory> remote_;          // of a machine of several nodes
-  std::map<const void*, double> free_at_;       // the time when a section's last worker leaves it
+  double speed_ = 1, wake_s_ = 0, lock_s_ = 0, line_transfer_s_ = 0, page_fault_s_ = 0;  // of the machine
+  std::optional<RemoteMemory> remote_;  // of a machine of several nodes
+  std::map<const void*, Section> sections_;
+  Section ids_, memory_map_, num_cells_;  // shared during attempts
   VirtualSpending spending_;
   std::mt19937_64 random_;
   std::vector<WorkerState> states_;

@@ -14,13 +14,24 @@ namespace {
 using testing::HasSubstr;
 
 MachineModel blacklight() { return MachineModel::from_file(PODM_MACHINES + std::string("/blacklight.toml")); }
+// A machine with every constant.
+MachineModel machine_with_all() {
+  MachineModel machine = blacklight();
+  machine.line_transfer_s = 30e-9;
+  machine.page_fault_s = 2e-6;
+  return machine;
+}
 
 // Returns all constants that costs depend on, by the names that factors use.
 std::map<std::string, double> constants_of(const MachineModel& machine) {
-  std::map<std::string, double> constants{
-      {"core_speed", machine.core_speed}, {"hop_latency", machine.hop_latency_s},
-      {"miss_share", machine.miss_share}, {"retries", machine.retries},
-      {"wake", machine.wake_s},           {"lock", machine.lock_s}};
+  std::map<std::string, double> constants{{"core_speed", machine.core_speed},
+                                          {"hop_latency", machine.hop_latency_s},
+                                          {"miss_share", machine.miss_share},
+                                          {"retries", machine.retries},
+                                          {"wake", machine.wake_s},
+                                          {"lock", machine.lock_s},
+                                          {"line_transfer", machine.line_transfer_s},
+                                          {"page_fault", machine.page_fault_s}};
   for (const auto& [name, member] : kTimeCosts) constants[name] = machine.costs.*member;
   for (const MachineModel::Station& station : machine.stations)
     constants[station.name.starts_with("node") ? "hub_service" : "router_service"] = station.service_s;
@@ -28,11 +39,11 @@ std::map<std::string, double> constants_of(const MachineModel& machine) {
 }
 
 TEST(CostFactor, ChangesTheConstantThatItNamesAlone) {
-  const auto plain = constants_of(blacklight());
-  EXPECT_EQ(plain.size(), 8 + kTimeCosts.size());
+  const auto plain = constants_of(machine_with_all());
+  EXPECT_EQ(plain.size(), 10 + kTimeCosts.size());
   for (const auto& [changed, value] : plain) {
     EXPECT_GT(value, 0) << changed;
-    MachineModel machine = blacklight();
+    MachineModel machine = machine_with_all();
     CostFactor::parse(changed + "=2").apply_to(machine);
     for (const auto& [name, now] : constants_of(machine))
       EXPECT_DOUBLE_EQ(now, plain.at(name) * (name == changed ? 2 : 1)) << changed << ", " << name;
@@ -47,6 +58,16 @@ TEST(CostFactor, OfZeroSwitchesOff) {
   EXPECT_EQ(machine.stations.back().service_s, 0);
   EXPECT_GT(machine.stations.front().service_s, 0);
   EXPECT_EQ(machine.costs.leaf_handed_out, 0);
+}
+
+TEST(CostFactor, OfACostOfSharingThatTheMachineLacksMultipliesTheUsualOne) {
+  MachineModel machine = blacklight();
+  CostFactor::parse("line_transfer=2").apply_to(machine);
+  CostFactor::parse("page_fault=0.25").apply_to(machine);
+  EXPECT_DOUBLE_EQ(machine.line_transfer_s, 200e-9);
+  EXPECT_DOUBLE_EQ(machine.page_fault_s, 0.25e-6);
+  CostFactor::parse("line_transfer=0").apply_to(machine);
+  EXPECT_EQ(machine.line_transfer_s, 0);
 }
 
 TEST(CostFactor, RefusesWhatIsNone) {

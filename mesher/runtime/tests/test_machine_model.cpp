@@ -152,6 +152,15 @@ TEST(MachineModel, UnitsBecomeSeconds) {
   EXPECT_NEAR(model.wake_s, 5e-6, 1e-15);
   EXPECT_NEAR(model.lock_s, 0.5e-6, 1e-15);
   EXPECT_EQ(model.retries, 0);
+  EXPECT_EQ(model.line_transfer_s, 0);
+  EXPECT_EQ(model.page_fault_s, 0);
+}
+
+TEST(MachineModel, MayHaveCostsOfSharedLinesAndNewPages) {
+  const MachineModel model = model_of(
+      replaced(kRing, "lock_us = 0.5", "lock_us = 0.5\nline_transfer_ns = 80\npage_fault_us = 0.25"));
+  EXPECT_NEAR(model.line_transfer_s, 80e-9, 1e-18);
+  EXPECT_NEAR(model.page_fault_s, 0.25e-6, 1e-18);
 }
 
 TEST(MachineModel, OfOneNodeNeedsNoNetwork) {
@@ -180,39 +189,41 @@ TEST_P(RefusedMachines, AreRefusedWithTheirPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     MachineModel, RefusedMachines,
-    testing::Values(Fault{"name = \"one\"", "name = 1", "1", "name must be a non-empty string"},
-                    Fault{"name = \"one\"", "colour = 'red'\nname = 'a'", "1", "no key 'colour'"},
-                    Fault{"name = \"one\"", "name = 'a", "1", ""},
-                    Fault{"core_speed", "cor\xC3\xA9_speed", "6:4", "ASCII"},
-                    Fault{"sockets_per_node = 2\n", "", "2", "needs the key 'sockets_per_node'"},
-                    Fault{"sockets_per_node = 2", "sockets_per_node = 2.0", "3", "must be an integer"},
-                    Fault{"cores_per_socket = 4", "cores_per_socket = 0", "4", "from 1 to"},
-                    Fault{"cores_per_socket = 4", "cores_per_socket = 99999", "4", "from 1 to"},
-                    Fault{"clock_ghz = 2.0", "clock_ghz = nan", "5", "must be a number"},
-                    Fault{"clock_ghz = 2.0", "clock_ghz = inf", "5", "must be a number"},
-                    Fault{"clock_ghz = 2.0", "clock_mhz = 2000", "2", "needs the key 'clock_ghz'"},
-                    Fault{"core_speed = 0.5", "core_speed = -1", "6", "must be a number from"},
-                    Fault{"level = 3", "level = 1", "7", "from the fastest to the slowest"},
-                    Fault{"cycles = 40", "cycles = 3", "7", "from the fastest to the slowest"},
-                    Fault{"cores = 4,", "cores = 9,", "7", "from 1 to 8"},
-                    Fault{"gib_per_node = 1", "gib_per_node = 0", "9", "gib_per_node"},
-                    Fault{"local_cycles = 200", "local_cycles = 30", "10", "slower than any cache"},
-                    Fault{"cycles_per_hop = 1000\n", "", "8", "needs the key 'cycles_per_hop'"},
-                    Fault{"miss_share = 0.25", "miss_share = 1.5", "12", "from 0 to 1"},
-                    Fault{"wake_us = 5", "wake_us = \"5\"", "14", "wake_us must be a number"},
-                    Fault{"nodes = 4", "nodes = 400", "17", "from 1 to 256"},
-                    Fault{"nodes = 4", "nodes = 5", "16", "node 4 is not connected to node 0"},
-                    Fault{"nodes = 4", "nodes = 4\nrouters = 1", "16", "router 0 is not connected to node 0"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 4\", \"node 0\"", "18", "\"node 4\" is none"},
-                    Fault{"\"node 3\", \"node 0\"", "\"router 0\", \"node 0\"", "18", "0 routers"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node\", \"node 0\"", "18", "\"node\" is none"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 3x\", \"node 0\"", "18", "\"node 3x\" is none"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 3\"", "18", "a link is a pair"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 3\", 0", "18", "must be a non-empty string"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 3\", \"node 3\"", "18", "to itself"},
-                    Fault{"\"node 3\", \"node 0\"", "\"node 1\", \"node 0\"", "18", "second link"},
-                    Fault{"hub_accesses_per_s = 4e6", "hub_accesses_per_s = 0", "19",
-                          "must be a number from"}));
+    testing::Values(
+        Fault{"name = \"one\"", "name = 1", "1", "name must be a non-empty string"},
+        Fault{"name = \"one\"", "colour = 'red'\nname = 'a'", "1", "no key 'colour'"},
+        Fault{"name = \"one\"", "name = 'a", "1", ""},
+        Fault{"core_speed", "cor\xC3\xA9_speed", "6:4", "ASCII"},
+        Fault{"sockets_per_node = 2\n", "", "2", "needs the key 'sockets_per_node'"},
+        Fault{"sockets_per_node = 2", "sockets_per_node = 2.0", "3", "must be an integer"},
+        Fault{"cores_per_socket = 4", "cores_per_socket = 0", "4", "from 1 to"},
+        Fault{"cores_per_socket = 4", "cores_per_socket = 99999", "4", "from 1 to"},
+        Fault{"clock_ghz = 2.0", "clock_ghz = nan", "5", "must be a number"},
+        Fault{"clock_ghz = 2.0", "clock_ghz = inf", "5", "must be a number"},
+        Fault{"clock_ghz = 2.0", "clock_mhz = 2000", "2", "needs the key 'clock_ghz'"},
+        Fault{"core_speed = 0.5", "core_speed = -1", "6", "must be a number from"},
+        Fault{"level = 3", "level = 1", "7", "from the fastest to the slowest"},
+        Fault{"cycles = 40", "cycles = 3", "7", "from the fastest to the slowest"},
+        Fault{"cores = 4,", "cores = 9,", "7", "from 1 to 8"},
+        Fault{"gib_per_node = 1", "gib_per_node = 0", "9", "gib_per_node"},
+        Fault{"local_cycles = 200", "local_cycles = 30", "10", "slower than any cache"},
+        Fault{"cycles_per_hop = 1000\n", "", "8", "needs the key 'cycles_per_hop'"},
+        Fault{"miss_share = 0.25", "miss_share = 1.5", "12", "from 0 to 1"},
+        Fault{"wake_us = 5", "wake_us = \"5\"", "14", "wake_us must be a number"},
+        Fault{"lock_us = 0.5", "lock_us = 0.5\nline_transfer_ns = -1", "16", "line_transfer_ns must be"},
+        Fault{"lock_us = 0.5", "lock_us = 0.5\npage_fault_us = nan", "16", "page_fault_us must be"},
+        Fault{"nodes = 4", "nodes = 400", "17", "from 1 to 256"},
+        Fault{"nodes = 4", "nodes = 5", "16", "node 4 is not connected to node 0"},
+        Fault{"nodes = 4", "nodes = 4\nrouters = 1", "16", "router 0 is not connected to node 0"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 4\", \"node 0\"", "18", "\"node 4\" is none"},
+        Fault{"\"node 3\", \"node 0\"", "\"router 0\", \"node 0\"", "18", "0 routers"},
+        Fault{"\"node 3\", \"node 0\"", "\"node\", \"node 0\"", "18", "\"node\" is none"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 3x\", \"node 0\"", "18", "\"node 3x\" is none"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 3\"", "18", "a link is a pair"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 3\", 0", "18", "must be a non-empty string"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 3\", \"node 3\"", "18", "to itself"},
+        Fault{"\"node 3\", \"node 0\"", "\"node 1\", \"node 0\"", "18", "second link"},
+        Fault{"hub_accesses_per_s = 4e6", "hub_accesses_per_s = 0", "19", "must be a number from"}));
 
 TEST(MachineModel, RefusesMoreCoresThanAnyMachineHas) {
   const std::string text = replaced(replaced(kRing, "sockets_per_node = 2", "sockets_per_node = 64"),

@@ -188,6 +188,87 @@ TEST(VirtualTime, LetsOneWorkerAtATimeIntoASection) {
   EXPECT_DOUBLE_EQ(time.spending().queueing_s, 1);
 }
 
+MachineModel machine_of_sharing(double line_transfer_s, double page_fault_s) {
+  MachineModel machine{.name = "shared", .topology = Topology::synthetic("core:4 pu:1")};
+  machine.line_transfer_s = line_transfer_s;
+  machine.page_fault_s = page_fault_s;
+  return machine;
+}
+
+// The line of the section's mutex is at the second worker's core until the third one enters.
+TEST(VirtualTime, ChargesALineThatAnotherWorkerHadLast) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  const MachineModel machine = machine_of_sharing(0.25, 0);
+  VirtualTime time(stop, kThree, VirtualCost::kMeasured, 1, &machine);
+  const int section = 0;
+  std::array<double, kThree> left_at{};
+  time.run([&](WorkerId self) {
+    for (int i = 0; i < (self == 1 ? 2 : 1); ++i) time.spend_in(&section, self, 1.0);
+    left_at[self] = time.now_s();
+  });
+  EXPECT_DOUBLE_EQ(left_at[0], 1.25);
+  EXPECT_DOUBLE_EQ(left_at[2], 3.75);
+  EXPECT_DOUBLE_EQ(left_at[1], 5) << "after the third worker";
+}
+
+// A worker whose attempts add cells. It may also take two locks of an arena and four pages in each.
+struct Asking {
+  WorkerId id() const { return self; }
+  Outcome attempt() {
+    ++num_attempts;
+    return Outcome::kCommitted;
+  }
+  void release() {}
+  std::int64_t net_cells() const { return static_cast<std::int64_t>(100 * num_attempts); }
+  const Counters& counters() const { return counts; }
+  const std::optional<AccessTally>& accesses() const { return tally; }
+  SharedRequests shared_requests() const {
+    return asks ? SharedRequests{2 * num_attempts, 4 * kPageBytes * num_attempts} : SharedRequests{};
+  }
+
+  WorkerId self = 0;
+  bool asks = true;
+  std::uint64_t num_attempts = 0;
+  Counters counts = {};
+  std::optional<AccessTally> tally = {};
+};
+
+// Returns the virtual seconds of as many attempts by each of three workers.
+double seconds_of_asking(const MachineModel* machine, int num_attempts, bool asks = true) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  VirtualTime time(stop, kThree, VirtualCost::kMeasured, 1, machine);
+  std::array<Asking, kThree> workers{Asking{0, asks}, Asking{1, asks}, Asking{2, asks}};
+  time.run([&](WorkerId self) {
+    for (int i = 0; i < num_attempts; ++i) time.attempt(workers[self]);
+  });
+  return time.now_s();
+}
+
+TEST(VirtualTime, OfAMachineWithoutCostsOfSharingIsTheSameToTheBit) {
+  const MachineModel none = machine_of_sharing(0, 0);
+  EXPECT_EQ(seconds_of_asking(&none, 1000), seconds_of_asking(nullptr, 1000));
+}
+
+// Attempts themselves take less than a microsecond.
+TEST(VirtualTime, ServesOneWorkerAtATimeWithNewPages) {
+  const MachineModel machine = machine_of_sharing(0, 0.5);
+  EXPECT_NEAR(seconds_of_asking(&machine, 10), 3 * 10 * 4 * 0.5, 1);
+}
+
+// The first of the two locks of an attempt takes a transfer.
+TEST(VirtualTime, PassesTheLineOfALockFromWorkerToWorker) {
+  const MachineModel machine = machine_of_sharing(0.25, 0);
+  EXPECT_NEAR(seconds_of_asking(&machine, 10), 3 * 10 * 0.25, 1);
+}
+
+TEST(VirtualTime, PassesTheLineOfTheNumberOfCellsAsOftenAsItIsReported) {
+  const MachineModel machine = machine_of_sharing(0.25, 0);
+  const int attempts = StopControl::kAttemptsBetweenChecks;
+  ASSERT_GT(100 * attempts, StopControl::kLongestReportingStep);
+  EXPECT_NEAR(seconds_of_asking(&machine, attempts - 1, false), 0, 0.01);
+  EXPECT_NEAR(seconds_of_asking(&machine, attempts, false), 3 * 0.25, 0.01);
+}
+
 // A worker whose attempts fail. Records if it holds its locks.
 struct Failing {
   WorkerId id() const { return 0; }
