@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "podm/errors.h"
 
@@ -16,9 +17,10 @@ namespace {
 // rows; it stands for the space around the grid. Larger distances are cut to `farthest`.
 class StepsOut {
  public:
-  /// The range must include all cubes of the grid beside cubes of the set.
-  StepsOut(const CubeSet& set, const CubeRange& range, std::uint8_t farthest)
+  /// The range must include all cubes of the grid beside cubes of the set `within`.
+  StepsOut(const CubeSet& set, const CubeRange& within, const CubeRange& range, std::uint8_t farthest)
       : set_(set),
+        within_(within),
         range_(range),
         farthest_(farthest),
         length_(static_cast<std::size_t>(range.length(0))),
@@ -52,11 +54,12 @@ class StepsOut {
                                                     row(y, z - direction), row(y + 1, z - direction)};
     for (std::size_t x = 0; x < length_ + 2; ++x)
       nearest_[x] = std::min(std::min(passed[0][x], passed[1][x]), std::min(passed[2][x], passed[3][x]));
-    const CubeId first = set_.grid().id({range_.low[0], range_.low[1] + y, range_.low[2] + z});
+    CubePlace at{range_.low[0], range_.low[1] + y, range_.low[2] + z};
+    const CubeId first = set_.grid().id(at);
     std::uint8_t* const here = row(y, z);
-    for (std::size_t x = 1; x <= length_; ++x) {
+    for (std::size_t x = 1; x <= length_; ++x, ++at[0]) {
       const std::uint8_t nearest = std::min(std::min(nearest_[x - 1], nearest_[x]), nearest_[x + 1]);
-      const bool has = set_.has(first + static_cast<CubeId>(x - 1));
+      const bool has = within_.has(at) && set_.has(first + static_cast<CubeId>(x - 1));
       here[x] = has ? std::min(here[x], farther(nearest)) : std::uint8_t{0};
     }
     for (std::size_t i = 1; i <= length_; ++i) {
@@ -70,16 +73,18 @@ class StepsOut {
   }
 
   const CubeSet& set_;
-  const CubeRange range_;
+  const CubeRange within_, range_;
   const std::uint8_t farthest_;
   const std::size_t length_, rows_;
   std::vector<std::uint8_t> steps_, nearest_;
 };
 
-// Returns the range with one more cube at the high end of each axis.
-CubeRange one_longer(CubeRange range) {
-  for (int& high : range.high) ++high;
-  return range;
+CubeRange intersection(CubeRange a, const CubeRange& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    a.low[axis] = std::max(a.low[axis], b.low[axis]);
+    a.high[axis] = std::min(a.high[axis], b.high[axis]);
+  }
+  return a;
 }
 
 }  // namespace
@@ -89,7 +94,8 @@ CubeGrid::CubeGrid(const Box& box, double side_mm)
   const Vector extent = box.high - box.low;
   const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / side_mm)); };
   const std::array<double, 3> size{along(extent.x), along(extent.y), along(extent.z)};
-  if (!(size[0] * size[1] * size[2] < CubeSet::kNone)) throw InputError("cells are too small for this image");
+  if (!(size[0] * size[1] * size[2] < std::numeric_limits<CubeId>::max()))
+    throw InputError("cells are too small for this image");
   for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(size[axis]);
   num_cubes_ = static_cast<CubeId>(size[0] * size[1] * size[2]);
 }
@@ -116,29 +122,128 @@ CubeRange CubeGrid::grown(const CubeRange& range, int rings) const {
   return grown;
 }
 
-void CubeSet::insert_all() {
-  has_.assign(has_.size(), 1);
-  range_ = grid_->all();
+template <class Visit>
+bool CubeSet::for_each_word(CubeId first, CubeId last, const Visit& visit) {
+  for (std::size_t word = word_of(first); word <= word_of(last); ++word) {
+    Word bits = ~Word{0};
+    if (word == word_of(first)) bits &= ~Word{0} << bit_of(first);
+    if (word == word_of(last)) bits &= ~Word{0} >> (63 - bit_of(last));
+    if (!visit(word, bits)) return false;
+  }
+  return true;
 }
 
-bool CubeSet::is_full() const {
-  return range_ == grid_->all() && std::find(has_.begin(), has_.end(), 0) == has_.end();
+bool CubeSet::has_all(CubeId first, CubeId last) const {
+  return for_each_word(first, last,
+                       [&](std::size_t word, Word bits) { return (words_[word] & bits) == bits; });
+}
+
+bool CubeSet::has_any(CubeId first, CubeId last) const {
+  return !for_each_word(first, last, [&](std::size_t word, Word bits) { return (words_[word] & bits) == 0; });
+}
+
+void CubeSet::insert_run(CubeId first, CubeId last) {
+  for_each_word(first, last, [&](std::size_t word, Word bits) { return words_[word] |= bits, true; });
+}
+
+CubeId CubeSet::next(CubeId cube, CubeId end, bool is_in_set) const {
+  while (cube < end) {
+    const Word bits = (is_in_set ? words_[word_of(cube)] : ~words_[word_of(cube)]) >> bit_of(cube);
+    if (bits != 0) return std::min(end, cube + static_cast<CubeId>(std::countr_zero(bits)));
+    cube += 64 - bit_of(cube);
+  }
+  return end;
+}
+
+template <class Visit>
+void CubeSet::for_each_run(const Visit& visit) const {
+  if (range_.is_empty()) return;
+  CubePlace at = range_.low;
+  for (at[2] = range_.low[2]; at[2] < range_.high[2]; ++at[2])
+    for (at[1] = range_.low[1]; at[1] < range_.high[1]; ++at[1]) {
+      const CubeId row = grid_->id({0, at[1], at[2]});
+      const CubeId end = row + static_cast<CubeId>(range_.high[0]);
+      CubeId first = row + static_cast<CubeId>(range_.low[0]);
+      while ((first = next(first, end, true)) < end) {
+        const CubeId after = next(first, end, false);
+        at[0] = static_cast<int>(first - row);
+        visit(first, after - 1, std::as_const(at));
+        first = after;
+      }
+    }
+}
+
+template <class Test>
+bool CubeSet::all_rows(const CubeRange& range, const Test& test) const {
+  for (int z = range.low[2]; z < range.high[2]; ++z)
+    for (int y = range.low[1]; y < range.high[1]; ++y)
+      if (!test(grid_->id({range.low[0], y, z}), grid_->id({range.high[0] - 1, y, z}))) return false;
+  return true;
+}
+
+bool CubeSet::covers(const CubeRange& range) const {
+  return all_rows(range, [&](CubeId first, CubeId last) { return has_all(first, last); });
+}
+
+bool CubeSet::meets(CubeRange range) const {
+  range = intersection(range, range_);
+  if (range.is_empty()) return false;
+  return !all_rows(range, [&](CubeId first, CubeId last) { return !has_any(first, last); });
+}
+
+void CubeSet::insert(const CubeRange& range) {
+  if (range.is_empty()) return;
+  all_rows(range, [&](CubeId first, CubeId last) { return insert_run(first, last), true; });
+  extend(range);
+}
+
+void CubeSet::insert(const CubeSet& cubes) {
+  cubes.for_each_run([&](CubeId first, CubeId last, const CubePlace&) { insert_run(first, last); });
+  extend(cubes.range_);
+}
+
+void CubeSet::insert(const CubeRun& run) {
+  insert_run(run[0], run[1]);
+  const CubePlace first = grid_->place_of(run[0]), last = grid_->place_of(run[1]);
+  CubeRange range{first, {last[0] + 1, last[1] + 1, last[2] + 1}};
+  const bool is_in_plane = first[2] == last[2], is_in_row = is_in_plane && first[1] == last[1];
+  if (!is_in_row) range.low[0] = 0, range.high[0] = grid_->size()[0];
+  if (!is_in_plane) range.low[1] = 0, range.high[1] = grid_->size()[1];
+  extend(range);
+}
+
+bool CubeSet::covers(const Point& center, double radius_mm) const {
+  bool is_covered = true;
+  grid_->for_each_row(center, radius_mm,
+                      [&](CubeId first, CubeId last) { return is_covered = has_all(first, last); });
+  return is_covered;
+}
+
+void CubeSet::insert(const Point& center, double radius_mm) {
+  grid_->for_each_row(center, radius_mm,
+                      [&](CubeId first, CubeId last) { return insert_run(first, last), true; });
+  const Vector reach{radius_mm, radius_mm, radius_mm};
+  const CubePlace low = grid_->place_of(center - reach), last = grid_->place_of(center + reach);
+  extend({low, {last[0] + 1, last[1] + 1, last[2] + 1}});
 }
 
 std::vector<CubeId> CubeSet::cubes() const {
   std::vector<CubeId> cubes;
-  grid_->for_each(range_, [&](CubeId cube, const CubePlace&) {
-    if (has(cube)) cubes.push_back(cube);
+  for_each_run([&](CubeId first, CubeId last, const CubePlace&) {
+    for (CubeId cube = first; cube <= last; ++cube) cubes.push_back(cube);
   });
   return cubes;
 }
 
-std::vector<std::array<CubeId, 2>> CubeSet::runs() const {
-  std::vector<std::array<CubeId, 2>> runs;
-  for (const CubeId cube : cubes()) {
-    if (runs.empty() || runs.back()[1] + 1 != cube) runs.push_back({cube, cube});
-    runs.back()[1] = cube;
-  }
+std::vector<CubeRun> CubeSet::runs() const {
+  std::vector<CubeRun> runs;
+  for_each_run([&](CubeId first, CubeId last, const CubePlace&) {
+    if (!runs.empty() && runs.back()[1] + 1 == first) {
+      runs.back()[1] = last;
+    } else {
+      runs.push_back({first, last});
+    }
+  });
   return runs;
 }
 
@@ -148,69 +253,57 @@ CubeSet CubeSet::grown(int rings) const {
   if (range_.is_empty()) return result;
   const CubePlace& size = grid_->size();
   const std::array<std::ptrdiff_t, 3> stride{1, size[0], std::ptrdiff_t{size[0]} * size[1]};
-  result.range_ = grid_->grown(range_, rings);
+  const auto moved = [&](CubeId cube, int steps, std::size_t axis) {
+    return static_cast<CubeId>(cube + steps * stride[axis]);
+  };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<std::uint8_t> before = result.has_;
-    grid_->for_each(result.range_, [&](CubeId cube, const CubePlace& at) {
-      if (before[cube] == 0) return;
-      const int first = std::max(-rings, -at[axis]), last = std::min(rings, size[axis] - 1 - at[axis]);
-      for (int step = first; step <= last; ++step) *(&result.has_[cube] + step * stride[axis]) = 1;
+    const CubeSet before = result;
+    before.for_each_run([&](CubeId first, CubeId last, const CubePlace& at) {
+      const int length = axis == 0 ? static_cast<int>(last - first) + 1 : 1;
+      const int down = -std::min(rings, at[axis]), up = std::min(rings, size[axis] - length - at[axis]);
+      if (axis == 0) return result.insert_run(moved(first, down, 0), moved(last, up, 0));
+      for (int steps = down; steps <= up; ++steps)
+        result.insert_run(moved(first, steps, axis), moved(last, steps, axis));
     });
+    result.range_.low[axis] = std::max(0, range_.low[axis] - rings);
+    result.range_.high[axis] = std::min(size[axis], range_.high[axis] + rings);
   }
   return result;
 }
 
-CubeDepths::CubeDepths(const CubeSet& set, std::uint8_t most)
-    : range_(set.grid().grown(set.range(), 1)), index_(range_) {
-  if (set.range().is_empty()) {
+CubeNumbers::CubeNumbers(CubeSet cubes) : cubes_(std::move(cubes)), before_(cubes_.words_.size() + 1) {
+  for (std::size_t word = 0; word < cubes_.words_.size(); ++word)
+    before_[word + 1] = before_[word] + static_cast<std::uint32_t>(std::popcount(cubes_.words_[word]));
+}
+
+CubeDepths::CubeDepths(const CubeSet& set, const CubeRange& within, std::uint8_t most)
+    : range_(intersection(set.range(), within)), index_({}) {
+  if (range_.is_empty()) {
     range_ = {};
-  } else {
-    depths_ = StepsOut(set, range_, static_cast<std::uint8_t>(most + 1)).depths();
+    return;
   }
-}
-
-CubeCounts::CubeCounts(const CubeSet& set) : range_(set.range()), index_(one_longer(range_)) {
-  if (range_.is_empty()) return;
-  const auto size = [&](std::size_t axis) { return static_cast<std::size_t>(range_.length(axis)) + 1; };
-  below_.assign(size(0) * size(1) * size(2), 0);
-  const auto& [low, high] = range_;
-  for (int z = low[2]; z < high[2]; ++z)
-    for (int y = low[1]; y < high[1]; ++y) {
-      std::uint32_t in_row = 0;
-      for (int x = low[0]; x < high[0]; ++x) {
-        in_row += set.has(set.grid().id({x, y, z}));
-        below_[index_({x + 1, y + 1, z + 1})] =
-            in_row + below(x + 1, y, z + 1) + below(x + 1, y + 1, z) - below(x + 1, y, z);
-      }
-    }
-}
-
-std::int64_t CubeCounts::count(CubePlace low, CubePlace high) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = std::max(low[axis], range_.low[axis]);
-    high[axis] = std::min(high[axis] + 1, range_.high[axis]);
-    if (low[axis] >= high[axis]) return 0;
-  }
-  const auto [a, b, c] = low;
-  const auto [x, y, z] = high;
-  return below(x, y, z) - below(a, y, z) - below(x, b, z) - below(x, y, c) + below(a, b, z) + below(a, y, c) +
-         below(x, b, c) - below(a, b, c);
+  const CubeRange inside = range_;
+  range_ = set.grid().grown(inside, 1);
+  index_ = CubeRangeIndex(range_);
+  depths_ = StepsOut(set, inside, range_, static_cast<std::uint8_t>(most + 1)).depths();
 }
 
 std::vector<std::uint32_t> CubeSet::components() const {
-  std::vector<std::uint32_t> component(has_.size(), kNone);
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  const CubeNumbers number_of(*this);
+  std::vector<std::uint32_t> component(number_of.count(), kNone);
   std::uint32_t next = 0;
   std::vector<CubeId> front;
   for (const CubeId first : cubes()) {
-    if (component[first] != kNone) continue;
-    component[first] = next;
+    if (component[number_of[first]] != kNone) continue;
+    component[number_of[first]] = next;
     front.assign(1, first);
     while (!front.empty()) {
       const CubePlace at = grid_->place_of(front.back());
       front.pop_back();
       grid_->for_each(grid_->with_neighbors(at), [&](CubeId cube, const CubePlace&) {
-        if (!has(cube) || component[cube] != kNone) return;
-        component[cube] = next;
+        if (!has(cube) || component[number_of[cube]] != kNone) return;
+        component[number_of[cube]] = next;
         front.push_back(cube);
       });
     }

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace podm {
 
 using CubeId = std::uint32_t;
 using CubePlace = std::array<int, 3>;
+using CubeRun = std::array<CubeId, 2>;  // the first and the last of consecutive numbers
 
 /// Cubes from `low` up to but not including `high`.
 struct CubeRange {
@@ -80,19 +82,13 @@ class CubeGrid {
   /// Returns the position along a space-filling curve that is finer than the cubes. Consecutive points on the
   /// curve are near each other.
   MortonCode place_on_curve(const Point& p) const;
-  /// Returns the squared distance from a point to the cube, mm^2, up to rounding.
-  double squared_distance(const CubePlace& at, const Point& p) const {
-    const Vector offset = p - origin_;
-    return squared_length({to_cube(at, 0, offset.x), to_cube(at, 1, offset.y), to_cube(at, 2, offset.z)});
-  }
+  /// Calls visit(first cube, last cube) for each row of cubes along x that a ball meets, until it returns
+  /// false.
+  template <class Visit>
+  void for_each_row(const Point& center, double radius_mm, const Visit& visit) const;
   /// Calls visit(cube, its place).
   template <class Visit>
   void for_each(const CubeRange& range, const Visit& visit) const;
-  /// Returns, for each of the length + 1 planes across the axis, the weight of the range's cubes below the
-  /// plane.
-  template <class Weight>
-  std::vector<std::uint64_t> weights_below(const CubeRange& range, std::size_t axis,
-                                           const std::vector<Weight>& weight_of_cube) const;
 
  private:
   // Clamps grid coordinates as doubles, because points may be anywhere.
@@ -115,6 +111,24 @@ class CubeGrid {
 };
 
 template <class Visit>
+void CubeGrid::for_each_row(const Point& center, double radius_mm, const Visit& visit) const {
+  const Vector reach{radius_mm, radius_mm, radius_mm}, offset = center - origin_;
+  const CubePlace from = place_of(center - reach), to = place_of(center + reach);
+  CubePlace at = from;
+  for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
+    for (at[1] = from[1]; at[1] <= to[1]; ++at[1]) {
+      const double y = to_cube(at, 1, offset.y), z = to_cube(at, 2, offset.z);
+      const double squared_half_mm2 = radius_mm * radius_mm - y * y - z * z;
+      if (squared_half_mm2 < 0) continue;
+      const double half_mm = std::sqrt(squared_half_mm2);
+      const CubeId row = id({0, at[1], at[2]});
+      if (!visit(row + static_cast<CubeId>(along(0, offset.x - half_mm)),
+                 row + static_cast<CubeId>(along(0, offset.x + half_mm))))
+        return;
+    }
+}
+
+template <class Visit>
 void CubeGrid::for_each(const CubeRange& range, const Visit& visit) const {
   CubePlace at;
   for (at[2] = range.low[2]; at[2] < range.high[2]; ++at[2])
@@ -122,76 +136,103 @@ void CubeGrid::for_each(const CubeRange& range, const Visit& visit) const {
       for (at[0] = range.low[0]; at[0] < range.high[0]; ++at[0]) visit(id(at), std::as_const(at));
 }
 
-template <class Weight>
-std::vector<std::uint64_t> CubeGrid::weights_below(const CubeRange& range, std::size_t axis,
-                                                   const std::vector<Weight>& weight_of_cube) const {
-  std::vector<std::uint64_t> below(static_cast<std::size_t>(range.length(axis)) + 1);
-  for_each(range, [&](CubeId cube, const CubePlace& at) {
-    below[static_cast<std::size_t>(at[axis] - range.low[axis]) + 1] += weight_of_cube[cube];
-  });
-  std::partial_sum(below.begin(), below.end(), below.begin());
-  return below;
-}
-
-/// A set of cubes of a grid, which must outlive the set. Its functions visit only the least range that holds
-/// all cubes ever inserted.
+/// A set of cubes of a grid, which must outlive the set: a bit per cube. Its functions visit only the least
+/// range that holds all cubes ever inserted, and skip cubes that are not in the set by words of bits.
 class CubeSet {
  public:
   explicit CubeSet(const CubeGrid& grid)
-      : grid_(&grid), has_(grid.num_cubes()), range_{grid.size(), {0, 0, 0}} {}
+      : grid_(&grid), words_(word_of(grid.num_cubes()) + 1), range_{grid.size(), {0, 0, 0}} {}
   const CubeGrid& grid() const { return *grid_; }
   /// A range that holds all cubes of the set; empty if no cube was ever inserted.
   const CubeRange& range() const { return range_; }
-  bool has(CubeId cube) const { return has_[cube] != 0; }
+  bool has(CubeId cube) const { return (words_[word_of(cube)] >> bit_of(cube) & 1u) != 0; }
   bool has(const Point& p) const { return has(grid_->cube_at(p)); }
-  void insert(CubeId cube) { insert(cube, grid_->place_of(cube)); }
-  void insert(const CubePlace& at) { insert(grid_->id(at), at); }
-  void erase(CubeId cube) { has_[cube] = 0; }
-  void insert_all();
-  bool is_full() const;
+  void insert(CubeId cube) { insert(grid_->place_of(cube)); }
+  void insert(const CubePlace& at) {
+    const CubeId cube = grid_->id(at);
+    words_[word_of(cube)] |= Word{1} << bit_of(cube);
+    extend({at, {at[0] + 1, at[1] + 1, at[2] + 1}});
+  }
+  void insert(const CubeRange& range);
+  void insert(const CubeSet& cubes);
+  void insert(const CubeRun& run);
+  void erase(CubeId cube) { words_[word_of(cube)] &= ~(Word{1} << bit_of(cube)); }
+  void insert_all() { insert(grid_->all()); }
+  bool is_full() const { return covers(grid_->all()); }
+  /// Returns the cubes in order.
   std::vector<CubeId> cubes() const;
-  /// Returns the first and the last cube of each run of consecutive numbers, in order.
-  std::vector<std::array<CubeId, 2>> runs() const;
+  /// Returns the runs of consecutive numbers, in order.
+  std::vector<CubeRun> runs() const;
   /// Returns the set with all cubes added that are within `rings` cubes of one of its cubes along each axis.
   CubeSet grown(int rings) const;
-  /// Returns a component number per cube. Cubes of the set that share a face, an edge or a corner, directly
+  /// Returns a component number for each of cubes(). Cubes that share a face, an edge or a corner, directly
   /// or through other cubes of the set, get the same number. Numbers start at 0, in the order of first cubes.
-  /// Cubes outside the set have kNone.
-  static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> components() const;
-  /// Returns true if the set holds all cubes that a ball meets. Tests the cubes one by one.
-  bool covers(const Point& center, double radius_mm) const {
-    bool is_covered = true;
-    for_each_near(center, radius_mm, [&](const CubePlace& at) { return is_covered = has(grid_->id(at)); });
-    return is_covered;
-  }
+  /// covers() returns true if the set holds all cubes of the range, meets() if it holds any of them.
+  bool covers(const CubeRange& range) const;
+  bool meets(CubeRange range) const;
+  /// Returns true if the set holds all cubes that a ball meets.
+  bool covers(const Point& center, double radius_mm) const;
   /// Adds all cubes that a ball meets.
-  void insert(const Point& center, double radius_mm) {
-    for_each_near(center, radius_mm, [&](const CubePlace& at) { return insert(at), true; });
+  void insert(const Point& center, double radius_mm);
+
+ private:
+  friend class CubeNumbers;
+  using Word = std::uint64_t;
+  static constexpr std::size_t word_of(CubeId cube) { return cube / 64; }
+  static constexpr unsigned bit_of(CubeId cube) { return cube % 64; }
+  // Calls visit(word, its bits) for the words of the cubes from `first` to `last` until it returns false.
+  // Returns false if a call did.
+  template <class Visit>
+  static bool for_each_word(CubeId first, CubeId last, const Visit& visit);
+  bool has_all(CubeId first, CubeId last) const;
+  bool has_any(CubeId first, CubeId last) const;
+  void insert_run(CubeId first, CubeId last);
+  // Returns the first cube from `cube` on that is in the set, or that is not, or `end`.
+  CubeId next(CubeId cube, CubeId end, bool is_in_set) const;
+  // Calls visit(first cube, last cube, place of the first) for the runs of each row, in order.
+  template <class Visit>
+  void for_each_run(const Visit& visit) const;
+  // Calls test(first cube, last cube) for the rows of a range until it returns false. Returns false if a call
+  // did.
+  template <class Test>
+  bool all_rows(const CubeRange& range, const Test& test) const;
+  void extend(const CubeRange& range) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      range_.low[axis] = std::min(range_.low[axis], range.low[axis]);
+      range_.high[axis] = std::max(range_.high[axis], range.high[axis]);
+    }
+  }
+
+  const CubeGrid* grid_;
+  std::vector<Word> words_;  // bits by cube
+  CubeRange range_;
+};
+
+/// A set of cubes with consecutive numbers, in order.
+class CubeNumbers {
+ public:
+  explicit CubeNumbers(CubeSet cubes);
+  const CubeSet& cubes() const { return cubes_; }
+  std::size_t count() const { return before_.back(); }
+  /// The cube must be one of the set.
+  std::size_t operator[](CubeId cube) const {
+    const auto word = cubes_.words_[CubeSet::word_of(cube)];
+    const auto below = word & ((CubeSet::Word{1} << CubeSet::bit_of(cube)) - 1);
+    return before_[CubeSet::word_of(cube)] + static_cast<std::size_t>(std::popcount(below));
   }
 
  private:
-  void insert(CubeId cube, const CubePlace& at) {
-    has_[cube] = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      range_.low[axis] = std::min(range_.low[axis], at[axis]);
-      range_.high[axis] = std::max(range_.high[axis], at[axis] + 1);
-    }
-  }
-  // Calls visit(place of a cube) until it returns false.
-  template <class Visit>
-  void for_each_near(const Point& center, double radius_mm, const Visit& visit) const;
-
-  const CubeGrid* grid_;
-  std::vector<std::uint8_t> has_;
-  CubeRange range_;
+  CubeSet cubes_;
+  std::vector<std::uint32_t> before_;  // by word: the number of cubes in the words before
 };
 
 /// The depths of cubes in a set.
 class CubeDepths {
  public:
-  /// `most`: the largest depth that is distinguished, at most 254.
-  CubeDepths(const CubeSet& set, std::uint8_t most);
+  /// Cubes outside `within` count as outside the set. `most`: the largest depth that is distinguished, at
+  /// most 254.
+  CubeDepths(const CubeSet& set, const CubeRange& within, std::uint8_t most);
   /// Returns the number of rings of cubes around the cube that are in the set; 0 for cubes outside the set.
   std::uint8_t operator()(const CubePlace& at) const { return range_.has(at) ? depths_[index_(at)] : 0; }
 
@@ -200,36 +241,5 @@ class CubeDepths {
   CubeRangeIndex index_;
   std::vector<std::uint8_t> depths_;
 };
-
-/// Prefix sums that count the cubes of a set in any box with eight reads. (Crow, SIGGRAPH 1984.)
-class CubeCounts {
- public:
-  explicit CubeCounts(const CubeSet& set);
-  /// covers() returns true if the set holds all cubes from `low` to `high`, meets() if it holds any of them.
-  bool covers(const CubePlace& low, const CubePlace& high) const {
-    return count(low, high) ==
-           std::int64_t{high[0] - low[0] + 1} * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
-  }
-  bool meets(const CubePlace& low, const CubePlace& high) const { return count(low, high) > 0; }
-
- private:
-  std::int64_t count(CubePlace low, CubePlace high) const;
-  std::uint32_t below(int x, int y, int z) const { return below_[index_({x, y, z})]; }
-
-  CubeRange range_;
-  CubeRangeIndex index_;              // of the range with one more cube along each axis
-  std::vector<std::uint32_t> below_;  // number of cubes of the set whose coordinates are all less
-};
-
-template <class Visit>
-void CubeSet::for_each_near(const Point& center, double radius_mm, const Visit& visit) const {
-  const Vector reach{radius_mm, radius_mm, radius_mm};
-  const CubePlace from = grid_->place_of(center - reach), to = grid_->place_of(center + reach);
-  CubePlace at;
-  for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
-    for (at[1] = from[1]; at[1] <= to[1]; ++at[1])
-      for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
-        if (grid_->squared_distance(at, center) <= radius_mm * radius_mm && !visit(std::as_const(at))) return;
-}
 
 }  // namespace podm

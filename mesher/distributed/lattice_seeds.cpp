@@ -132,11 +132,11 @@ std::vector<Point> LatticeSeeds::collect(const FateOf& fate_of, const IsWanted& 
 }
 
 std::vector<Point> LatticeSeeds::in(const CubeSet& cubes) const {
-  const CubeCounts counts(cubes);
   const double margin = 2 * jitter_mm_;
   const auto fate_of = [&](const Node& node) {
     const Box box = grown(box_of(node), margin);
-    if (!counts.meets(cubes.grid().place_of(box.low), cubes.grid().place_of(box.high))) return Fate::kSkipped;
+    const CubePlace low = cubes.grid().place_of(box.low), last = cubes.grid().place_of(box.high);
+    if (!cubes.meets({low, {last[0] + 1, last[1] + 1, last[2] + 1}})) return Fate::kSkipped;
     return is_leaf(node) ? Fate::kTaken : Fate::kDivided;
   };
   return collect(fate_of, [&](const Point& p) { return cubes.has(p); });

@@ -257,7 +257,7 @@ class RunOnRank {
     refined_.emplace(DistributedRefinement{
         .refinement = refine_by(options_.algorithm, problem, team, options_.leaves, stop),
         .grid = grid,
-        .rank_of_cube = std::vector<int>(grid.num_cubes()),
+        .blocks = Blocks(grid, 1, 1),
         .rounds = {},
         .perturbing_rounds = {},
         .seeds = 0,

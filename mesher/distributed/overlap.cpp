@@ -29,10 +29,7 @@ struct Copy {
 class VerticesByCube {
  public:
   VerticesByCube(const Mesh& mesh, const CubeSet& cubes, std::size_t threads)
-      : cubes_(cubes), index_(cubes.range()) {
-    if (cubes.range().is_empty()) return;
-    const CubeRange& range = cubes.range();
-    of_cube_.resize(index_({range.high[0] - 1, range.high[1] - 1, range.high[2] - 1}) + 1);
+      : number_of_(cubes), of_cube_(number_of_.count()) {
     constexpr std::size_t kLength = 1 << 12;
     parallel_for_ranges(mesh.vertex_bound(), kLength, threads,
                         [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -41,24 +38,21 @@ class VerticesByCube {
                         });
   }
   /// The cube must be one of the set.
-  const VerticesOfCube& operator[](CubeId cube) const {
-    return of_cube_[index_(cubes_.grid().place_of(cube))];
-  }
+  const VerticesOfCube& operator[](CubeId cube) const { return of_cube_[number_of_[cube]]; }
 
  private:
   void add(const Vertex& vertex) {
     if (!is_shared(vertex.kind)) return;
-    const CubePlace at = cubes_.grid().place_of(vertex.point);
-    if (!cubes_.has(cubes_.grid().id(at))) return;
-    VerticesOfCube& here = of_cube_[index_(at)];
+    const CubeId cube = number_of_.cubes().grid().cube_at(vertex.point);
+    if (!number_of_.cubes().has(cube)) return;
+    VerticesOfCube& here = of_cube_[number_of_[cube]];
     // Relaxed: sums are read after all threads have ended.
     std::atomic_ref(here.number).fetch_add(1, std::memory_order_relaxed);
     std::atomic_ref(here.hash).fetch_add(
         mix(PointHash()(vertex.point) + static_cast<std::uint64_t>(vertex.kind)), std::memory_order_relaxed);
   }
 
-  const CubeSet& cubes_;
-  const CubeRangeIndex index_;
+  const CubeNumbers number_of_;
   std::vector<VerticesOfCube> of_cube_;
 };
 
@@ -74,12 +68,12 @@ class VerticesByCube {
 
 }  // namespace
 
-void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int>& writer_of_cube,
+void check_overlap(const Mesh& mesh, const CubeSet& known, const std::function<int(CubeId)>& writer_of,
                    std::size_t threads, Communication& ranks) {
   const VerticesByCube ours(mesh, known, threads);
   std::vector<std::vector<Copy>> copies(static_cast<std::size_t>(ranks.size()));
   for (const CubeId cube : known.cubes())
-    if (const int writer = writer_of_cube[cube]; writer != ranks.rank())
+    if (const int writer = writer_of(cube); writer != ranks.rank())
       copies[static_cast<std::size_t>(writer)].push_back({cube, ours[cube]});
   const std::vector<Bytes> received = ranks.all_to_all(messages_of(copies));
   for (std::size_t rank = 0; rank < received.size(); ++rank) {

@@ -3,6 +3,8 @@
 // nor the insertion of what they bring should ever cause that. The check finds it before it spoils the mesh.
 #pragma once
 
+#include <functional>
+
 #include "delaunay/mesh.h"
 #include "distributed/communication.h"
 #include "distributed/cubes.h"
@@ -12,7 +14,7 @@ namespace podm {
 /// Compares, for each of the cubes in `known`, this rank's vertices with those of the rank that wrote the
 /// cube last: their number, and the sum of the hashes of points and kinds. Throws InternalError on the writer
 /// of a cube that differs. The text names the ranks and the cube. `threads`: at least 1. Collective.
-void check_overlap(const Mesh& mesh, const CubeSet& known, const std::vector<int>& writer_of_cube,
+void check_overlap(const Mesh& mesh, const CubeSet& known, const std::function<int(CubeId)>& writer_of,
                    std::size_t threads, Communication& ranks);
 
 }  // namespace podm

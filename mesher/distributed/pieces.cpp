@@ -60,7 +60,7 @@ class PieceOfMesh {
   }
 
  private:
-  int rank_of(const Point& p) const { return refined_.rank_of_cube[refined_.grid.cube_at(p)]; }
+  int rank_of(const Point& p) const { return refined_.blocks.of(refined_.grid.place_of(p)); }
 
   // Returns the sum of the counts of the ranks before this one, and the sum of all counts.
   std::pair<std::uint64_t, std::uint64_t> sums_of(std::uint64_t count) const {
@@ -120,9 +120,11 @@ class PieceOfMesh {
 
   // Labels the cells, and chooses those that this rank owns.
   void choose_cells() {
+    const CubeRange block = refined_.blocks.range_of(ranks_.rank());
     is_own_vertex_.resize(mesh_.vertex_bound());
-    in_parallel(mesh_.vertex_bound(),
-                [&](std::uint32_t v) { is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank(); });
+    in_parallel(mesh_.vertex_bound(), [&](std::uint32_t v) {
+      is_own_vertex_[v] = block.has(refined_.grid.place_of(mesh_.point(v)));
+    });
     agree_on_centers();
     label_cells(mesh_, isosurface_, static_cast<int>(threads_));
     is_own_cell_.assign(mesh_.cell_bound(), 0);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "algorithms/leaf_size.h"
-#include "distributed/messages.h"
 #include "prediction/cost_model.h"
 #include "runtime/parallel_for.h"
 
@@ -47,30 +46,25 @@ double cells_in_cube(const Problem& problem, const Point& low, double side) {
 
 }  // namespace
 
-std::vector<std::uint64_t> predicted_work(const Problem& problem, const CubeGrid& grid, std::size_t threads,
-                                          Communication& ranks) {
+CubeWork predicted_work(const Problem& problem, const CubeGrid& grid, std::size_t threads,
+                        const Communication& ranks) {
   constexpr double kParts = 1e3;
   constexpr std::size_t kLength = 256;
   const auto first_of = [&](int rank) {
     return static_cast<CubeId>(std::uint64_t{grid.num_cubes()} * static_cast<std::uint64_t>(rank) /
                                static_cast<std::uint64_t>(ranks.size()));
   };
-  const CubeId first = first_of(ranks.rank());
-  std::vector<std::uint32_t> own(first_of(ranks.rank() + 1) - first);
-  parallel_for_ranges(own.size(), kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Point low = grid.low_of(grid.place_of(first + static_cast<CubeId>(i)));
-      own[i] =
-          static_cast<std::uint32_t>(std::min(4e9, kParts * cells_in_cube(problem, low, grid.side_mm())));
-    }
-  });
-  Bytes message;
-  append(message, own);
-  std::vector<std::uint64_t> work;
-  work.reserve(grid.num_cubes());
-  for (const Bytes& received : ranks.all_gather(std::move(message)))
-    for (const std::uint32_t cells : MessageReader(received).read<std::uint32_t>()) work.push_back(cells);
-  return work;
+  CubeWork own{first_of(ranks.rank()), {}};
+  own.of_cube.resize(first_of(ranks.rank() + 1) - own.first);
+  parallel_for_ranges(
+      own.of_cube.size(), kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Point low = grid.low_of(grid.place_of(own.first + static_cast<CubeId>(i)));
+          own.of_cube[i] =
+              static_cast<std::uint32_t>(std::min(4e9, kParts * cells_in_cube(problem, low, grid.side_mm())));
+        }
+      });
+  return own;
 }
 
 }  // namespace podm

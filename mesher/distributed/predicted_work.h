@@ -1,18 +1,16 @@
 // The work of a mesh by place, as predicted from the image.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "algorithms/construction.h"
+#include "distributed/blocks.h"
 #include "distributed/communication.h"
 #include "distributed/cubes.h"
 
 namespace podm {
 
-/// Returns the number of cells that are predicted in each cube, in thousandths. Each rank predicts the cells
-/// of its share of the cubes, on its `threads` threads, and all ranks get all numbers. Collective.
-std::vector<std::uint64_t> predicted_work(const Problem& problem, const CubeGrid& grid, std::size_t threads,
-                                          Communication& ranks);
+/// Returns the number of cells that are predicted in each cube of this rank's share of the cubes, in
+/// thousandths. It is computed on `threads` threads.
+CubeWork predicted_work(const Problem& problem, const CubeGrid& grid, std::size_t threads,
+                        const Communication& ranks);
 
 }  // namespace podm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "algorithms/leaf_size.h"
@@ -35,11 +36,6 @@ constexpr int kCubesAround = 4;
 constexpr double kKnownOverRadius = 1;
 // Side of a cube over the circumradius bound.
 constexpr double kCubeOverRadius = 2;
-
-struct CubeCount {
-  CubeId cube;
-  std::uint32_t cells;
-};
 
 // A name of a cell that is the same on all ranks.
 struct CellName {
@@ -112,8 +108,7 @@ class Rounds {
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(grid_around(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size()))),
-        learner_(construction_, grid_),
-        exchange_(ranks, learner_, grid_) {
+        learner_(construction_, grid_) {
     if (options.algorithm == Algorithm::kPodm || is_resumed()) return;
     const LeafOptions of_leaves{.initial_ratio = options.initial_ratio, .size_mm = options.leaf_size_mm};
     leaves_.emplace(construction_, levels_, of_leaves, options.algorithm, ranks);
@@ -133,13 +128,13 @@ class Rounds {
     work_in_rounds(Task::kRefine, rounds_);
     if (problem_.dihedral_bounds && !is_over_) perturb();
     const Update last_update =
-        complete(construction_.mesh(), exchange_, block(), kKnownRings, learner_.threads(), ranks_);
-    exchange_.check();
+        complete(construction_.mesh(), *exchange_, block(), kKnownRings, learner_.threads(), ranks_);
+    exchange_->check();
     if (perturbation_) report_poor_cells();
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
-            .rank_of_cube = blocks_->ranks(),
+            .blocks = *blocks_,
             .cubes = cubes_at_the_end(),
             .rounds = std::move(rounds_),
             .perturbing_rounds = std::move(perturbing_rounds_),
@@ -161,7 +156,7 @@ class Rounds {
     if (cut_seed_ != 0) {
       blocks_.emplace(grid_, cut_seed_, ranks_.size());
     } else {
-      blocks_.emplace(grid_, predicted_work(problem_, grid_, learner_.threads(), ranks_), ranks_.size());
+      blocks_.emplace(grid_, predicted_work(problem_, grid_, learner_.threads(), ranks_), ranks_);
     }
   }
 
@@ -170,10 +165,14 @@ class Rounds {
     return {.grid = {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z},
             .side_mm = grid_.side_mm(),
             .block = block().runs(),
-            .known = exchange_.known().runs()};
+            .known = exchange_->known().runs()};
   }
 
-  CubeSet block() const { return cubes_of(ranks_.rank(), blocks_->ranks()); }
+  CubeSet block() const {
+    CubeSet block(grid_);
+    block.insert(blocks_->range_of(ranks_.rank()));
+    return block;
+  }
 
   // Returns how much coarser seeds have to be, a power of two, for their cells to be at most half of the
   // limit.
@@ -197,8 +196,8 @@ class Rounds {
     Seeding seeding(seeds, learner_, block());
     complete(construction_.mesh(), seeding, block(), kSeededRings, learner_.threads(), ranks_);
     num_seeds_ = seeding.num_inserted();
-    exchange_.begin(blocks_->ranks(), seeding.known());
-    exchange_.check();
+    exchange_.emplace(ranks_, learner_, grid_, *blocks_, seeding.known());
+    exchange_->check();
   }
 
   // Inserts the vertices of a checkpoint in the block, one vertex of each cube elsewhere, and then those that
@@ -206,7 +205,7 @@ class Rounds {
   void restore() {
     std::vector<std::vector<LearntVertex>> of_rank(static_cast<std::size_t>(ranks_.size()));
     for (const LearntVertex& vertex : checkpoints_->read())
-      of_rank.at(static_cast<std::size_t>(blocks_->of(grid_.cube_at(vertex.point)))).push_back(vertex);
+      of_rank.at(static_cast<std::size_t>(blocks_->of(grid_.place_of(vertex.point)))).push_back(vertex);
     std::vector<LearntVertex> own = exchanged(of_rank);
     of_rank = {};
     std::vector<std::vector<LearntVertex>> sparse(static_cast<std::size_t>(ranks_.size()), one_per_cube(own));
@@ -214,11 +213,11 @@ class Rounds {
     const std::vector<LearntVertex> elsewhere = exchanged(sparse);
     own.insert(own.end(), elsewhere.begin(), elsewhere.end());
     learner_.learn(own, kReceivedInsertion, nullptr);
-    exchange_.begin(blocks_->ranks(), block());
+    exchange_.emplace(ranks_, learner_, grid_, *blocks_, block());
     const Update more =
-        complete(construction_.mesh(), exchange_, block(), kSeededRings, learner_.threads(), ranks_);
+        complete(construction_.mesh(), *exchange_, block(), kSeededRings, learner_.threads(), ranks_);
     num_seeds_ = own.size() + more.inserted;
-    exchange_.check();
+    exchange_->check();
   }
 
   std::vector<LearntVertex> one_per_cube(const std::vector<LearntVertex>& vertices) const {
@@ -242,7 +241,7 @@ class Rounds {
 
   // Returns the vertices in the cubes that this rank wrote last.
   std::vector<LearntVertex> written_here() const {
-    const CubeSet cubes = cubes_of(ranks_.rank(), exchange_.writers());
+    const CubeSet cubes = exchange_->written();
     const Mesh& mesh = construction_.mesh();
     return parallel_collect<LearntVertex>(mesh.vertex_bound(), learner_.threads(),
                                           [&](std::size_t begin, std::size_t end, auto& found) {
@@ -257,7 +256,7 @@ class Rounds {
   // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex. The
   // corners of the virtual box count only in cells that have no other vertices, because no rank is sure to
   // have all cells around such a corner.
-  bool is_own(const Cell& cell) const {
+  bool is_own(const Cell& cell, const CubeRange& block) const {
     const Mesh& mesh = construction_.mesh();
     const auto is_corner = [&](VertexId v) { return mesh.vertex(v).kind == VertexKind::kBox; };
     const VertexId least =
@@ -265,12 +264,12 @@ class Rounds {
           if (is_corner(v) != is_corner(w)) return is_corner(w);
           return lexicographically_less(mesh.point(v), mesh.point(w));
         });
-    return blocks_->of(grid_.cube_at(mesh.point(least))) == ranks_.rank();
+    return block.has(grid_.place_of(mesh.point(least)));
   }
 
   // Works until no cell waits, or the run is over.
   void work_in_rounds(Task task, std::vector<RoundReport>& rounds) {
-    zone_of_ = blocks_->ranks();
+    zones_.emplace(grid_, *blocks_);
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
     reach_over_radius_ = 1;
     std::vector<CellName> here;  // deferred cells that this rank's zone has
@@ -278,16 +277,16 @@ class Rounds {
       const auto round = static_cast<int>(rounds.size());
       const bool is_first = round == 0, knows_seeds = is_first && task == Task::kRefine;
       RoundReport report;
-      const CubeSet own = cubes_of(ranks_.rank(), zone_of_);
+      const CubeSet own = zones_->of(ranks_.rank());
       report.cubes = own.cubes().size();
       const double start_s = ranks_.report().computing_s;
       std::vector<CellName> left;
       if (!knows_seeds) {
         // A rank without cells learns its zone, too: it is the zone's writer from now on.
-        report.update = exchange_.update(wanted(own, here));
-        exchange_.check();
+        report.update = exchange_->update(wanted(own, here));
+        exchange_->check();
       }
-      const Zone zone(own, exchange_.known(), kKnownRings, knows_seeds ? kRoomInBlocks : 0);
+      const Zone zone(own, exchange_->known(), kKnownRings, knows_seeds ? kRoomInBlocks : 0);
       Construction::Entries entries = is_first ? first_entries(task) : find(here, zone, left);
       if (knows_seeds) count_cells_of_all(entries.size());
       if (task == Task::kRefine) drop_sound(entries, zone);
@@ -301,8 +300,7 @@ class Rounds {
       if (end_ != nullptr && stop_.is_over()) end_->announce();
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
-      for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-        if (zone_of_[cube] != kNoRank) exchange_.note_writer(cube, zone_of_[cube]);
+      exchange_->note_writers(std::move(*zones_), own);
       here = plan_next(round, left, report);
       rounds.push_back(report);
       if (task == Task::kRefine) save();
@@ -356,19 +354,13 @@ class Rounds {
                                          static_cast<double>(std::max<std::uint64_t>(1, sums[1])));
   }
 
-  CubeSet cubes_of(int rank, const std::vector<int>& rank_of_cube) const {
-    CubeSet cubes(grid_);
-    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-      if (rank_of_cube[cube] == rank) cubes.insert(cube);
-    return cubes;
-  }
-
   Construction::Entries own_cells() const {
     const Mesh& mesh = construction_.mesh();
+    const CubeRange block = blocks_->range_of(ranks_.rank());
     return parallel_collect<Construction::Entries::value_type>(
         mesh.cell_bound(), learner_.threads(), [&](std::size_t begin, std::size_t end, auto& own) {
           for (auto c = static_cast<CellId>(begin); c < end; ++c)
-            if (mesh.cell(c).is_alive() && is_own(mesh.cell(c))) own.push_back({c, mesh.stamp(c)});
+            if (mesh.cell(c).is_alive() && is_own(mesh.cell(c), block)) own.push_back({c, mesh.stamp(c)});
         });
   }
 
@@ -405,7 +397,7 @@ class Rounds {
     PerturbationReport& report = *perturbation_;
     std::vector<std::vector<KeptName>> kept(static_cast<std::size_t>(ranks_.size()));
     for (const KeptName& name : kept_) {
-      const int rank = blocks_->of(grid_.cube_at(name.cell.vertices[0]));
+      const int rank = blocks_->of(grid_.place_of(name.cell.vertices[0]));
       kept.at(static_cast<std::size_t>(rank)).push_back(name);
     }
     const Construction::Entries poor = own_poor_cells();
@@ -600,40 +592,47 @@ class Rounds {
     report.deferred = num_left[0];
     is_over_ = is_over_anywhere();
     if (report.deferred == 0 || is_over_) return {};
-    const CubeSet waiting = share_waiting(left);
-    Zones zones =
-        zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, exchange_.writers(), load_);
-    if (zones.are_connected) reach_over_radius_ *= 2;
-    zone_of_ = std::move(zones.rank_of_cube);
+    std::vector<CubeCount> num_waiting;
+    const CubeSet waiting = share_waiting(left, round < kShiftedRounds ? nullptr : &num_waiting);
+    zones_.emplace(
+        zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting, exchange_->writers(), load_));
+    if (zones_->are_connected()) reach_over_radius_ *= 2;
     std::vector<int> rank_of(left.size());
     for_each(left.size(),
-             [&](std::size_t i) { rank_of[i] = zone_of_[grid_.cube_at(ball_of(left[i]).center)]; });
+             [&](std::size_t i) { rank_of[i] = zones_->rank_of(grid_.place_of(ball_of(left[i]).center)); });
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
     for (std::size_t i = 0; i < left.size(); ++i)
       names.at(static_cast<std::size_t>(rank_of[i])).push_back(left[i]);
+    if (round < kShiftedRounds) add_load(names);
     std::vector<CellName> here = std::exchange(names[static_cast<std::size_t>(ranks_.rank())], {});
     const std::vector<CellName> more = exchanged(names);
     here.insert(here.end(), more.begin(), more.end());
     return here;
   }
 
-  // Returns the cubes that the deferred cells of all ranks request. Sets num_waiting_ to the number of cells
-  // with their centers in each cube.
-  CubeSet share_waiting(const std::vector<CellName>& left) {
+  void add_load(const std::vector<std::vector<CellName>>& names) {
+    std::vector<std::uint64_t> more;
+    for (const std::vector<CellName>& of_rank : names) more.push_back(of_rank.size());
+    ranks_.sum(more);
+    std::transform(more.begin(), more.end(), load_.begin(), load_.begin(), std::plus<>());
+  }
+
+  // Returns the cubes that the deferred cells of all ranks request. Adds the numbers of cells with their
+  // centers in each cube to `num_waiting`, if it is given.
+  CubeSet share_waiting(const std::vector<CellName>& left, std::vector<CubeCount>* num_waiting) {
     CubeSet around(grid_), waiting(grid_);
     Bytes message;
     std::vector<CubeCount> counts;
     for (const Waiting& here : by_cube(left)) {
       around.insert(here.largest.center, reach_over_radius_ * here.largest.radius_mm);
-      counts.push_back({here.cube, here.cells});
+      if (num_waiting != nullptr) counts.push_back({here.cube, here.cells});
     }
-    append(message, around.cubes());
+    append(message, around.runs());
     append(message, counts);
-    num_waiting_.assign(grid_.num_cubes(), 0);
     for (const Bytes& received : ranks_.all_gather(std::move(message))) {
       MessageReader reader(received);
-      for (const CubeId cube : reader.read<CubeId>()) waiting.insert(cube);
-      for (const auto& [cube, cells] : reader.read<CubeCount>()) num_waiting_[cube] += cells;
+      for (const auto& run : reader.read<CubeRun>()) waiting.insert(run);
+      for (const CubeCount& more : reader.read<CubeCount>()) num_waiting->push_back(more);
     }
     return waiting;
   }
@@ -663,13 +662,12 @@ class Rounds {
   Construction construction_;
   const CubeGrid grid_;
   Learner learner_;
-  VertexExchange exchange_;
-  std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
   std::optional<Blocks> blocks_;
-  double reach_over_radius_ = 1;  // the largest ball of a cube requests a zone within this many radii
-  std::vector<int> zone_of_;      // by cube: the rank of the cube's zone, or kNoRank
-  std::vector<std::uint32_t> num_waiting_;  // by cube: deferred cells on all ranks before the round
-  std::vector<std::uint64_t> load_;         // by rank: deferred cells assigned to it
+  std::optional<VertexExchange> exchange_;
+  std::optional<Zones> zones_;          // of the round
+  std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
+  double reach_over_radius_ = 1;        // the largest ball of a cube requests a zone within this many radii
+  std::vector<std::uint64_t> load_;     // by rank: deferred cells assigned to it
   std::vector<RoundReport> rounds_, perturbing_rounds_;
   std::optional<PerturbationReport> perturbation_;  // of R7, if it is applied
   std::vector<KeptName> kept_;                      // cells that R7 could not change on this rank

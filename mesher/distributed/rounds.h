@@ -48,7 +48,7 @@ struct RoundReport {
 struct DistributedRefinement {
   Refinement refinement;  ///< the mesh is correct in this rank's block and around it
   CubeGrid grid;
-  std::vector<int> rank_of_cube;                       ///< by cube: the rank of its block
+  Blocks blocks;                                       ///< by rank
   CubesOfRank cubes = {};                              ///< this rank's; none if there is one rank
   std::vector<RoundReport> rounds, perturbing_rounds;  ///< those of R1 to R6, and those of R7
   std::uint64_t seeds = 0;  ///< vertices that this rank inserted before round 0, also those of a checkpoint

@@ -1,6 +1,5 @@
 #include "distributed/seeding.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace podm {
@@ -10,15 +9,9 @@ namespace {
 Box box_around(const CubeSet& cubes) {
   const CubeGrid& grid = cubes.grid();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const CubeId cube : cubes.cubes()) {
-    const Point low = grid.low_of(grid.place_of(cube));
-    const double side = grid.side_mm();
-    box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z)};
-    box.high = {std::max(box.high.x, low.x + side), std::max(box.high.y, low.y + side),
-                std::max(box.high.z, low.z + side)};
-  }
-  return box;
+  if (cubes.range().is_empty())
+    return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  return {grid.low_of(cubes.range().low), grid.low_of(cubes.range().high)};
 }
 
 }  // namespace

@@ -17,14 +17,23 @@ bool is_less(const LearntVertex& a, const LearntVertex& b) {
 
 }  // namespace
 
-void VertexExchange::begin(const std::vector<int>& writer_of_cube, const CubeSet& known) {
-  writer_of_ = writer_of_cube;
-  known_ = known;
+// A rank may have changed the cubes of its zone that no cell requested, too.
+void VertexExchange::note_writers(Zones zones, const CubeSet& own) {
+  if (zones.are_blocks()) {
+    known_ = own;
+  } else {
+    for (const CubeId cube : known_.cubes())
+      if (zones.rank_of(grid_.place_of(cube)) != kNoRank) known_.erase(cube);
+    known_.insert(own);
+  }
+  writers_.note(std::move(zones));
 }
 
-void VertexExchange::note_writer(CubeId cube, int rank) {
-  writer_of_[cube] = rank;
-  rank == ranks_.rank() ? known_.insert(cube) : known_.erase(cube);
+CubeSet VertexExchange::written() const {
+  CubeSet written(grid_);
+  for (const CubeId cube : known_.cubes())
+    if (writers_.of(cube) == ranks_.rank()) written.insert(cube);
+  return written;
 }
 
 Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) {
@@ -33,7 +42,7 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
   for (const CubeId cube : wanted.cubes()) {
     if (known_.has(cube)) continue;
-    asked[static_cast<std::size_t>(writer_of_[cube])].push_back(cube);
+    asked[static_cast<std::size_t>(writers_.of(cube))].push_back(cube);
     known_.insert(cube);
     ++update.cubes;
   }
@@ -43,7 +52,8 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
 }
 
 void VertexExchange::check() const {
-  check_overlap(learner_.mesh(), known_, writer_of_, learner_.threads(), ranks_);
+  check_overlap(
+      learner_.mesh(), known_, [&](CubeId cube) { return writers_.of(cube); }, learner_.threads(), ranks_);
 }
 
 // Returns, for each rank, the cubes that it requested and all vertices in them.

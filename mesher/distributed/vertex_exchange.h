@@ -8,22 +8,24 @@
 #include "distributed/cubes.h"
 #include "distributed/learner.h"
 #include "distributed/vertex_source.h"
+#include "distributed/zones_of_round.h"
 
 namespace podm {
 
 class VertexExchange : public VertexSource {
  public:
-  /// Keeps the references.
-  VertexExchange(Communication& ranks, Learner& learner, const CubeGrid& grid)
-      : ranks_(ranks), learner_(learner), grid_(grid), writer_of_(grid.num_cubes()), known_(grid) {}
+  /// Keeps the references. Each rank has written its block and has all vertices of `known`.
+  VertexExchange(Communication& ranks, Learner& learner, const CubeGrid& grid, const Blocks& blocks,
+                 CubeSet known)
+      : ranks_(ranks), learner_(learner), grid_(grid), writers_(grid, blocks), known_(std::move(known)) {}
 
-  /// Notes the first writer of every cube, and the cubes of which this rank has all vertices.
-  void begin(const std::vector<int>& writer_of_cube, const CubeSet& known);
-  /// Notes that from now on the given rank has the current vertices of the cube.
-  void note_writer(CubeId cube, int rank);
+  /// Notes that from now on each rank has the current vertices of its zone, this one of `own`.
+  void note_writers(Zones zones, const CubeSet& own);
 
   /// Returns the rank that wrote each cube last.
-  const std::vector<int>& writers() const { return writer_of_; }
+  const Writers& writers() const { return writers_; }
+  /// Returns the cubes that this rank wrote last.
+  CubeSet written() const;
   CubeSet known() const override { return known_; }
   /// Compares the cubes that this rank knows with those of their writers (overlap.h). Collective.
   void check() const;
@@ -44,8 +46,8 @@ class VertexExchange : public VertexSource {
   Communication& ranks_;
   Learner& learner_;
   const CubeGrid& grid_;
-  std::vector<int> writer_of_;  // by cube
-  CubeSet known_;               // cubes of which this rank's copy is current
+  Writers writers_;
+  CubeSet known_;  // cubes of which this rank's copy is current
 };
 
 }  // namespace podm

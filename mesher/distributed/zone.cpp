@@ -20,11 +20,10 @@ double sure_radius_mm(const Cell& cell) {
 Zone::Zone(CubeSet own, CubeSet known, int rings, double room_over_radius)
     : own_(std::move(own)),
       known_(std::move(known)),
-      own_depth_(own_, kMostDepth),
-      known_depth_(known_, kMostDepth),
+      own_depth_(own_, own_.range(), kMostDepth),
+      known_depth_(known_, own_.grid().grown(own_.range(), kRingsOfDepths), kMostDepth),
       squared_room_(room_over_radius * room_over_radius),
-      is_all_known_(known_.is_full()),
-      known_counts_(known_) {
+      is_all_known_(known_.is_full()) {
   for (std::size_t depth = 0; depth < squared_reach_.size(); ++depth) {
     const double reach_mm = (1 - kStoredSphereTolerance) * static_cast<double>(depth) * own_.grid().side_mm();
     squared_reach_[depth] = static_cast<float>(reach_mm * reach_mm * (1 - kStoredSphereTolerance));
@@ -49,13 +48,8 @@ void Zone::insert_ball(const Cell& cell, CubeSet& cubes) {
   }
 }
 
-// Tests the box around the ball first; in most cases it is known, too.
 bool Zone::is_ball_known(const Point& center, double radius_mm) const {
-  const double r = radius_mm * (1 + kMargin);
-  const CubeGrid& grid = known_.grid();
-  return known_counts_.covers(grid.place_of(center - Vector{r, r, r}),
-                              grid.place_of(center + Vector{r, r, r})) ||
-         known_.covers(center, r);
+  return known_.covers(center, radius_mm * (1 + kMargin));
 }
 
 template class Operation<ZoneLocks<NoLocks>>;

@@ -72,12 +72,13 @@ class Zone {
 
  private:
   static constexpr std::uint8_t kMostDepth = 31;
+  // Rings of cubes around the zone whose depths among the known cubes are tabulated. Most centers lie there.
+  static constexpr int kRingsOfDepths = 4;
   CubeSet own_, known_;
   CubeDepths own_depth_, known_depth_;
   std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
   double squared_room_;
   bool is_all_known_;
-  CubeCounts known_counts_;
   float sure_squared_radius_;  // mm^2: all balls up to this size are known
 };
 

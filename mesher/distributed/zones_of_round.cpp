@@ -20,11 +20,18 @@ constexpr std::uint64_t kZonesPerRank = 2;
 // Cells within this many cubes on either side of a cut may have to wait again.
 constexpr int kCubesBesideCut = 3;
 
-constexpr std::size_t kNoZone = ~std::size_t{0};
+// A cube in which cells wait, and the number of its zone.
+struct WaitingCube {
+  CubePlace at;
+  std::uint64_t cells;
+  std::size_t zone;
+};
+using WaitingCubes = std::vector<WaitingCube>;
 
 // Cubes, and the zones that share them.
 struct Part {
-  CubeRange cubes;
+  std::vector<std::size_t> cubes;  // by number
+  CubeRange range;
   std::size_t num_zones;
 };
 
@@ -37,31 +44,25 @@ struct PlaneCut {
 // Divides space into parts with about equal numbers of deferred cells. The cuts are where few cells lie.
 class CutZones {
  public:
-  CutZones(const CubeSet& waiting, const std::vector<std::uint32_t>& num_cells, std::size_t num_zones)
-      : waiting_(waiting), num_cells_(num_cells), zone_of_(waiting.grid().num_cubes(), kNoZone) {
-    divide({waiting.grid().all(), num_zones});
-  }
-  /// Returns the number of each cube's zone, or kNoZone.
-  const std::vector<std::size_t>& operator()() const { return zone_of_; }
+  CutZones(WaitingCubes& waiting, std::size_t first_zone) : waiting_(waiting), next_zone_(first_zone) {}
 
- private:
   void divide(const Part& part) {
     const PlaneCut cut = part.num_zones > 1 ? best_cut(part) : PlaneCut{};
     if (std::isinf(cut.cost)) {
-      waiting_.grid().for_each(part.cubes, [&](CubeId cube, const CubePlace&) {
-        if (waiting_.has(cube)) zone_of_[cube] = next_zone_;
-      });
+      for (const std::size_t cube : part.cubes) waiting_[cube].zone = next_zone_;
       ++next_zone_;
       return;
     }
-    Part lower = part, upper = part;
-    lower.cubes.high[cut.axis] = upper.cubes.low[cut.axis] = cut.at;
-    lower.num_zones = part.num_zones / 2;
-    upper.num_zones -= lower.num_zones;
+    Part lower{{}, part.range, part.num_zones / 2};
+    Part upper{{}, part.range, part.num_zones - lower.num_zones};
+    lower.range.high[cut.axis] = upper.range.low[cut.axis] = cut.at;
+    for (const std::size_t cube : part.cubes)
+      (waiting_[cube].at[cut.axis] < cut.at ? lower : upper).cubes.push_back(cube);
     divide(lower);
     divide(upper);
   }
 
+ private:
   PlaneCut best_cut(const Part& part) const {
     PlaneCut best;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -71,14 +72,23 @@ class CutZones {
     return best;
   }
 
+  // Returns, for each of the length + 1 planes across the axis, the number of the part's cells below it.
+  std::vector<std::uint64_t> cells_below(const Part& part, std::size_t axis) const {
+    std::vector<std::uint64_t> below(static_cast<std::size_t>(part.range.length(axis)) + 1);
+    for (const std::size_t cube : part.cubes)
+      below[static_cast<std::size_t>(waiting_[cube].at[axis] - part.range.low[axis]) + 1] +=
+          waiting_[cube].cells;
+    std::partial_sum(below.begin(), below.end(), below.begin());
+    return below;
+  }
+
   // The cost of a cut is the number of cells beside it over the product of the numbers on either side. (Shi
   // and Malik, IEEE TPAMI 2000.) Each side gets at least half of its share by number of zones.
   PlaneCut best_cut_across(std::size_t axis, const Part& part) const {
-    const std::vector<std::uint64_t> cells_below =
-        waiting_.grid().weights_below(part.cubes, axis, num_cells_);
-    const int num_planes = part.cubes.length(axis);
+    const std::vector<std::uint64_t> cells = cells_below(part, axis);
+    const int num_planes = part.range.length(axis);
     const auto below = [&](int plane) {
-      return static_cast<double>(cells_below[static_cast<std::size_t>(std::clamp(plane, 0, num_planes))]);
+      return static_cast<double>(cells[static_cast<std::size_t>(std::clamp(plane, 0, num_planes))]);
     };
     const double all = below(num_planes);
     const double least_below =
@@ -89,42 +99,39 @@ class CutZones {
       if (below(plane) < least_below || below(plane) > most_below) continue;
       const double beside = below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut);
       const double cost = (1 + beside) / (below(plane) * (all - below(plane)));
-      if (cost < best.cost) best = {axis, part.cubes.low[axis] + plane, cost};
+      if (cost < best.cost) best = {axis, part.range.low[axis] + plane, cost};
     }
     return best;
   }
 
-  const CubeSet& waiting_;
-  const std::vector<std::uint32_t>& num_cells_;
-  std::vector<std::size_t> zone_of_;
-  std::size_t next_zone_ = 0;
+  WaitingCubes& waiting_;
+  std::size_t next_zone_;
 };
 
-std::vector<std::size_t> connected_zones(const CubeSet& waiting) {
-  const std::vector<std::uint32_t> components = waiting.components();
-  std::vector<std::size_t> zone_of(components.size(), kNoZone);
-  for (const CubeId cube : waiting.cubes()) zone_of[cube] = components[cube];
-  return zone_of;
+// Returns the cubes in order, in connected zones.
+WaitingCubes connected_zones(const CubeNumbers& waiting, const std::vector<CubeCount>& num_cells) {
+  const std::vector<std::uint32_t> components = waiting.cubes().components();
+  WaitingCubes cubes;
+  for (const CubeId cube : waiting.cubes().cubes())
+    cubes.push_back({waiting.cubes().grid().place_of(cube), 0, components[cubes.size()]});
+  for (const auto& [cube, cells] : num_cells) cubes[waiting[cube]].cells += cells;
+  return cubes;
 }
 
 // Cuts zones with many deferred cells. Returns false if there is none.
-bool cut_large(std::vector<std::size_t>& zone_of, const CubeSet& waiting,
-               const std::vector<std::uint32_t>& num_cells, std::size_t num_ranks) {
-  const std::vector<CubeId> cubes = waiting.cubes();
-  std::vector<std::uint64_t> cells_of(cubes.size());  // by zone
-  for (const CubeId cube : cubes) cells_of[zone_of[cube]] += num_cells[cube];
-  CubeSet large(waiting.grid());
-  std::vector<std::uint32_t> cells_in_large(num_cells.size());
+bool cut_large(WaitingCubes& waiting, const CubeGrid& grid, std::size_t num_ranks) {
+  std::vector<std::uint64_t> cells_of(waiting.size());  // by zone
+  for (const WaitingCube& cube : waiting) cells_of[cube.zone] += cube.cells;
+  Part large{{}, grid.all(), 0};
   std::uint64_t cells = 0;
-  for (const CubeId cube : cubes) {
-    if (cells_of[zone_of[cube]] < 2 * kCellsPerZone) continue;
-    large.insert(cube);
-    cells += cells_in_large[cube] = num_cells[cube];
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    if (cells_of[waiting[i].zone] < 2 * kCellsPerZone) continue;
+    large.cubes.push_back(i);
+    cells += waiting[i].cells;
   }
   if (cells == 0) return false;
-  const std::size_t num_zones = std::min<std::uint64_t>(kZonesPerRank * num_ranks, cells / kCellsPerZone);
-  const std::vector<std::size_t> parts = CutZones(large, cells_in_large, num_zones)();
-  for (const CubeId cube : large.cubes()) zone_of[cube] = cubes.size() + parts[cube];
+  large.num_zones = std::min<std::uint64_t>(kZonesPerRank * num_ranks, cells / kCellsPerZone);
+  CutZones(waiting, waiting.size()).divide(large);
   return true;
 }
 
@@ -167,41 +174,75 @@ std::map<std::size_t, int> ranks_of(const std::map<std::size_t, ZoneSize>& zones
   return rank_of;
 }
 
-std::vector<int> shifted_blocks(int round, const Blocks& blocks, const CubeSet& waiting,
-                                const std::vector<std::uint32_t>& num_cells,
-                                const std::vector<int>& writer_of_cube, std::vector<std::uint64_t>& load) {
-  const CubeGrid& grid = waiting.grid();
-  std::vector<int> rank_of_cube(grid.num_cubes(), kNoRank);
-  grid.for_each(grid.all(), [&](CubeId cube, CubePlace at) {
-    for (int& place : at) place = std::max(0, place - kCubesPerShift * round);
-    const int rank = blocks.of(grid.id(at));
-    if (!waiting.has(cube) && writer_of_cube[cube] != rank) return;
-    rank_of_cube[cube] = rank;
-    load[static_cast<std::size_t>(rank)] += num_cells[cube];
-  });
-  return rank_of_cube;
-}
-
 }  // namespace
 
-Zones zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
-                     const std::vector<std::uint32_t>& num_cells, const std::vector<int>& writer_of_cube,
-                     std::vector<std::uint64_t>& load) {
-  if (round <= kShiftedRounds)
-    return {shifted_blocks(round, blocks, waiting, num_cells, writer_of_cube, load)};
-  std::vector<std::size_t> zone_of = connected_zones(waiting);
-  const bool has_cuts = round <= kLastRoundWithCuts && cut_large(zone_of, waiting, num_cells, load.size());
-  std::map<std::size_t, ZoneSize> zones;
-  for (const CubeId cube : waiting.cubes()) {
-    ZoneSize& zone = zones[zone_of[cube]];
-    ++zone.cubes_of_block[blocks.of(cube)];
-    ++zone.cubes;
-    zone.cells += num_cells[cube];
+int Zones::shifted_block(CubePlace at) const {
+  for (int& place : at) place = std::max(0, place - shift_);
+  return blocks_->of(at);
+}
+
+int Zones::rank_of(const CubePlace& at) const {
+  const CubeId cube = grid_->id(at);
+  if (numbered_) return is_waiting(cube) ? rank_of_waiting(at) : kNoRank;
+  const int rank = shifted_block(at);
+  return are_blocks() || is_waiting(cube) || writers_->of(at) == rank ? rank : kNoRank;
+}
+
+CubeSet Zones::of(int rank) const {
+  CubeSet zone(*grid_);
+  if (numbered_) {
+    const std::vector<CubeId> cubes = numbered_->cubes().cubes();
+    for (std::size_t i = 0; i < cubes.size(); ++i)
+      if (ranks_[i] == rank) zone.insert(cubes[i]);
+    return zone;
   }
-  const std::map<std::size_t, int> rank_of = ranks_of(zones, load);
-  std::vector<int> rank_of_cube(zone_of.size(), kNoRank);
-  for (const CubeId cube : waiting.cubes()) rank_of_cube[cube] = rank_of.at(zone_of[cube]);
-  return {std::move(rank_of_cube), !has_cuts};
+  CubeRange range = blocks_->range_of(rank);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (range.low[axis] > 0) range.low[axis] += shift_;
+    range.high[axis] = std::min(grid_->size()[axis], range.high[axis] + shift_);
+  }
+  if (are_blocks()) {
+    zone.insert(range);
+  } else {
+    grid_->for_each(range, [&](CubeId, const CubePlace& at) {
+      if (rank_of(at) == rank) zone.insert(at);
+    });
+  }
+  return zone;
+}
+
+int Writers::of(const CubePlace& at) const {
+  const CubeId cube = grid_.id(at);
+  for (auto zones = later_.rbegin(); zones != later_.rend(); ++zones)
+    if (zones->is_waiting(cube)) return zones->rank_of_waiting(at);
+  return blocks_.of(at);
+}
+
+// A rank that has a cube in which no cell waits in its zone wrote the cube last before, too.
+void Writers::note(Zones zones) {
+  if (zones.are_blocks()) return later_.clear();
+  later_.push_back(std::move(zones));
+}
+
+Zones zones_of_round(int round, const Blocks& blocks, CubeSet waiting,
+                     const std::vector<CubeCount>& num_cells, const Writers& writers,
+                     std::vector<std::uint64_t>& load) {
+  const CubeGrid& grid = waiting.grid();
+  if (round <= kShiftedRounds) return {std::move(waiting), kCubesPerShift * round, blocks, writers};
+  CubeNumbers numbered(std::move(waiting));
+  WaitingCubes cubes = connected_zones(numbered, num_cells);
+  const bool has_cuts = round <= kLastRoundWithCuts && cut_large(cubes, grid, load.size());
+  std::map<std::size_t, ZoneSize> zones;
+  for (const WaitingCube& cube : cubes) {
+    ZoneSize& zone = zones[cube.zone];
+    ++zone.cubes_of_block[blocks.of(cube.at)];
+    ++zone.cubes;
+    zone.cells += cube.cells;
+  }
+  const std::map<std::size_t, int> rank_of_zone = ranks_of(zones, load);
+  std::vector<int> rank_of;
+  for (const WaitingCube& cube : cubes) rank_of.push_back(rank_of_zone.at(cube.zone));
+  return {std::move(numbered), std::move(rank_of), !has_cuts};
 }
 
 }  // namespace podm

@@ -14,6 +14,7 @@
 // sent.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "distributed/blocks.h"
@@ -25,17 +26,82 @@ inline constexpr int kNoRank = -1;
 inline constexpr int kShiftedRounds = 3;
 inline constexpr int kLastRoundWithCuts = 8;
 
-struct Zones {
-  std::vector<int> rank_of_cube;  ///< by cube: the rank of its zone, or kNoRank
-  bool are_connected = false;     ///< no two zones touch: zones must grow from round to round
+struct CubeCount {
+  CubeId cube;
+  std::uint32_t cells;
+};
+
+class Writers;
+
+/// The zones of a round, as a function of the cube: no rank has a table of all cubes.
+class Zones {
+ public:
+  /// The blocks, the zones of round 0.
+  Zones(const CubeGrid& grid, const Blocks& blocks) : grid_(&grid), blocks_(&blocks) {}
+  /// The blocks, shifted by this number of cubes. A zone includes the cubes of `waiting` and those that its
+  /// rank wrote last. Keeps the references.
+  Zones(CubeSet waiting, int shift, const Blocks& blocks, const Writers& writers)
+      : grid_(&waiting.grid()),
+        waiting_(std::move(waiting)),
+        blocks_(&blocks),
+        writers_(&writers),
+        shift_(shift) {}
+  /// Zones of the numbered cubes alone, with the rank of each.
+  Zones(CubeNumbers waiting, std::vector<int> ranks, bool are_connected)
+      : grid_(&waiting.cubes().grid()),
+        numbered_(std::move(waiting)),
+        ranks_(std::move(ranks)),
+        are_connected_(are_connected) {}
+
+  /// Returns the rank of the cube's zone, or kNoRank.
+  int rank_of(const CubePlace& at) const;
+  /// Returns the cubes of the rank's zone.
+  CubeSet of(int rank) const;
+  /// Returns true if no two zones touch: zones must then grow from round to round.
+  bool are_connected() const { return are_connected_; }
+  bool are_blocks() const { return writers_ == nullptr && blocks_ != nullptr; }
+
+ private:
+  friend class Writers;
+  bool is_waiting(CubeId cube) const {
+    return numbered_ ? numbered_->cubes().has(cube) : waiting_ && waiting_->has(cube);
+  }
+  // The cube must be waiting.
+  int rank_of_waiting(const CubePlace& at) const {
+    return numbered_ ? ranks_[(*numbered_)[grid_->id(at)]] : shifted_block(at);
+  }
+  int shifted_block(CubePlace at) const;
+
+  const CubeGrid* grid_;
+  std::optional<CubeSet> waiting_;
+  const Blocks* blocks_ = nullptr;
+  const Writers* writers_ = nullptr;
+  int shift_ = 0;
+  std::optional<CubeNumbers> numbered_;
+  std::vector<int> ranks_;  // by number
+  bool are_connected_ = false;
+};
+
+/// The rank that wrote each cube last, as a function of the cube.
+class Writers {
+ public:
+  Writers(const CubeGrid& grid, const Blocks& blocks) : grid_(grid), blocks_(blocks) {}
+  int of(const CubePlace& at) const;
+  int of(CubeId cube) const { return of(grid_.place_of(cube)); }
+  /// Notes that each rank wrote its zone.
+  void note(Zones zones);
+
+ private:
+  const CubeGrid& grid_;
+  const Blocks& blocks_;
+  std::vector<Zones> later_;  // since each rank wrote its block
 };
 
 /// Returns the zones of a round after round 0. `waiting` are the cubes that deferred cells request, and their
-/// neighbours; `num_cells` is the number of deferred cells by cube, and `writer_of_cube` the rank that wrote
-/// each cube last. `load` holds the cells that each rank had in earlier rounds; the cells of this round are
-/// added.
-Zones zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
-                     const std::vector<std::uint32_t>& num_cells, const std::vector<int>& writer_of_cube,
+/// neighbours. Rounds after the shifted ones need `num_cells`, the numbers of deferred cells in these cubes,
+/// and `load`, which holds the cells that each rank had in earlier rounds. They add the cells of this round.
+Zones zones_of_round(int round, const Blocks& blocks, CubeSet waiting,
+                     const std::vector<CubeCount>& num_cells, const Writers& writers,
                      std::vector<std::uint64_t>& load);
 
 }  // namespace podm

@@ -40,7 +40,8 @@ std::string fault_if_other_has(const std::vector<Given>& vertices, const std::ve
       CubeSet cubes(grid);
       for (const CubeId cube : ranks.rank() == 0 ? std::vector<CubeId>{0, 1, 2, 3} : known)
         cubes.insert(cube);
-      check_overlap(store.mesh, cubes, std::vector<int>(grid.num_cubes()), 2, ranks);
+      check_overlap(
+          store.mesh, cubes, [](CubeId) { return 0; }, 2, ranks);
     });
   });
 }

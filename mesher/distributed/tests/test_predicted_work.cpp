@@ -13,14 +13,19 @@
 namespace podm::test {
 namespace {
 
-std::vector<std::uint64_t> work_on(int num_ranks, const Problem& problem, const CubeGrid& grid) {
-  std::vector<std::vector<std::uint64_t>> work(static_cast<std::size_t>(num_ranks));
+// Returns the work of all cubes.
+std::vector<std::uint32_t> work_on(int num_ranks, const Problem& problem, const CubeGrid& grid) {
+  std::vector<CubeWork> work(static_cast<std::size_t>(num_ranks));
   run_ranks({.num_ranks = num_ranks, .one_at_a_time = true}, [&](Communication& ranks) {
     const auto rank = static_cast<std::size_t>(ranks.rank());
     work[rank] = predicted_work(problem, grid, 1 + rank % 2, ranks);
   });
-  for (const auto& of_rank : work) EXPECT_EQ(of_rank, work[0]);
-  return work[0];
+  std::vector<std::uint32_t> all;
+  for (const CubeWork& of_rank : work) {
+    EXPECT_EQ(of_rank.first, all.size());
+    all.insert(all.end(), of_rank.of_cube.begin(), of_rank.of_cube.end());
+  }
+  return all;
 }
 
 TEST(PredictedWork, IsTheSameOnAnyNumberOfRanksAndNearThatOfTheWhole) {
@@ -33,7 +38,7 @@ TEST(PredictedWork, IsTheSameOnAnyNumberOfRanksAndNearThatOfTheWhole) {
                           .sizes = SizeField(std::vector<double>(image.labels.size(), 1.0)),
                           .cell_capacity = 1 << 20};
     const CubeGrid grid(problem.object, 2);
-    const std::vector<std::uint64_t> work = work_on(1, problem, grid);
+    const std::vector<std::uint32_t> work = work_on(1, problem, grid);
     EXPECT_EQ(work.size(), grid.num_cubes());
     for (const int num_ranks : {2, 3, 7}) EXPECT_EQ(work_on(num_ranks, problem, grid), work);
     SizeOptions sizes;

@@ -24,7 +24,7 @@ class CubesAndZones : public testing::Test {
         box.low[axis] = draw(grid_.size()[axis]);
         box.high[axis] = box.low[axis] + 1 + draw(grid_.size()[axis] - box.low[axis]);
       }
-      grid_.for_each(box, [&](CubeId cube, const CubePlace&) { set.insert(cube); });
+      set.insert(box);
     }
     return set;
   }
@@ -39,7 +39,7 @@ class CubesAndZones : public testing::Test {
 TEST_F(CubesAndZones, DepthsAreRingsOfCubesInTheSet) {
   for (int i = 0; i < 20; ++i) {
     const CubeSet set = drawn_cubes();
-    const CubeDepths depths(set, 5);
+    const CubeDepths depths(set, grid_.all(), 5);
     CubeSet outside(grid_);
     for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
       if (!set.has(cube)) outside.insert(cube);
@@ -52,12 +52,24 @@ TEST_F(CubesAndZones, DepthsAreRingsOfCubesInTheSet) {
   }
 }
 
-TEST_F(CubesAndZones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
+TEST_F(CubesAndZones, DepthsWithinARangeAreThoseOfTheCubesThere) {
+  for (int i = 0; i < 20; ++i) {
+    const CubeSet set = drawn_cubes();
+    const CubeRange within = drawn_cubes().range();
+    CubeSet inside(grid_);
+    for (const CubeId cube : set.cubes())
+      if (within.has(grid_.place_of(cube))) inside.insert(cube);
+    const CubeDepths depths(set, within, 5), of_those(inside, grid_.all(), 5);
+    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
+      ASSERT_EQ(depths(grid_.place_of(cube)), of_those(grid_.place_of(cube))) << "cube " << cube;
+  }
+}
+
+TEST_F(CubesAndZones, CubesOfAnyBoxAreThoseOfVisits) {
   for (int i = 0; i < 20; ++i) {
     CubeSet set(grid_);
     for (int cubes = draw(6) * draw(6); cubes > 0; --cubes)
       set.insert(grid_.id({3 + draw(5), 2 + draw(5), 1 + draw(4)}));
-    const CubeCounts counts(set);
     std::set<CubeId> found;
     for (const CubeId cube : set.cubes()) found.insert(cube);
     for (int k = 0; k < 200; ++k) {
@@ -72,11 +84,21 @@ TEST_F(CubesAndZones, CountsOfCubesInAnyBoxAreThoseOfVisits) {
         in_set += set.has(cube);
         EXPECT_EQ(set.has(cube), found.contains(cube));
       });
-      const CubePlace last{box.high[0] - 1, box.high[1] - 1, box.high[2] - 1};
-      EXPECT_EQ(counts.meets(box.low, last), in_set > 0);
-      EXPECT_EQ(counts.covers(box.low, last), in_set == visited);
+      EXPECT_EQ(set.meets(box), in_set > 0);
+      EXPECT_EQ(set.covers(box), in_set == visited);
     }
   }
+}
+
+TEST_F(CubesAndZones, CubesAreNumberedInOrder) {
+  const CubeSet set = drawn_cubes();
+  const CubeNumbers number_of(set);
+  std::size_t next = 0;
+  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
+    if (set.has(cube)) {
+      ASSERT_EQ(number_of[cube], next++);
+    }
+  EXPECT_EQ(number_of.count(), next);
 }
 
 TEST_F(CubesAndZones, WhatIsWithinReachOfAPointIsInTheZone) {
