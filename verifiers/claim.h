@@ -23,12 +23,17 @@ inline Verdict verdict_on(std::uint64_t num_violations) {
 /// A place where a claim does not hold, or comes closest to not holding.
 struct Witness {
   std::string statement{};           ///< the statement of the claim that it breaks: "no duplicate cells"
-  std::vector<CellId> cells{};       ///< 0-based
-  std::vector<VertexId> vertices{};  ///< 0-based
+  std::vector<GlobalId> cells{};     ///< 0-based
+  std::vector<GlobalId> vertices{};  ///< 0-based
   std::vector<Point> points{};       ///< points to look at
   double value = 0;                  ///< the measured quantity; larger `severity` is worse
   double severity = 0;
   LabelValue label = 0;
+
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(statement, cells, vertices, points, value, severity, label);
+  }
 };
 
 /// Counts of values in equal bins over [low, high). Values outside go to the first or last bin.
@@ -38,6 +43,11 @@ struct Histogram {
   double low = 0, high = 0;
   double minimum = 0, maximum = 0;  ///< extremes of all values
   std::vector<std::uint64_t> counts;
+
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(name, unit, low, high, minimum, maximum, counts);
+  }
 };
 
 inline constexpr std::size_t kMaxWitnesses = 10;
@@ -53,7 +63,8 @@ struct ClaimResult {
   std::uint64_t num_violations = 0;  ///< of the claim; 0 exactly when the verdict is pass
   std::uint64_t num_warnings = 0;    ///< facts reported but not claimed, such as orphan vertices
   std::vector<Witness> worst;        ///< at most kMaxWitnesses, worst first; on a pass the closest calls
-  std::vector<CellId> bad_cells;     ///< every cell in a violation, ascending, each once: for --extract-bad
+  /// Every cell in a violation, ascending, each once: for --extract-bad. On ranks each has its own cells.
+  std::vector<GlobalId> bad_cells;
   std::vector<Histogram> histograms;
   double seconds = 0;  ///< wall time, filled by the caller
 

@@ -9,7 +9,6 @@
 
 #include "build_info.h"
 #include "errors.h"
-#include "parallel.h"
 #include "run_claims.h"
 
 namespace podm::verify {
@@ -50,10 +49,16 @@ CLI::Option* add_option(CLI::App& app, const char* name, const char* type, Value
   return app.add_option(name, value, description)->option_text(type);
 }
 
-void declare_inputs(CLI::App& app, TypedCommand& command) {
+const char* name_of(Program program) {
+  return program == Program::kPodmVerify ? "podm-verify" : "podm-verify-mpi";
+}
+
+void declare_inputs(CLI::App& app, TypedCommand& command, Program program) {
   Options& options = command.options;
   add_option(app, "MESH", " ", options.mesh_path,
-             "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen, Abaqus, Exodus II;\nalso .gz")
+             program == Program::kPodmVerify
+                 ? "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen, Abaqus, Exodus II;\nalso .gz"
+                 : "PVTU, of which each rank reads some pieces")
       ->required();
   app.option_defaults()->group("Inputs");
   add_option(app, "--image", "FILE", options.image_path,
@@ -172,21 +177,30 @@ void declare_claims(CLI::App& app, TypedCommand& command) {
       ->check(positive());
 }
 
-void declare_report(CLI::App& app, TypedCommand& command, const char* program) {
+void declare_report(CLI::App& app, TypedCommand& command, Program program) {
   Options& options = command.options;
   app.option_defaults()->group("Run and report");
   add_option(app, "--json", "FILE", options.json_path,
              "write the report as JSON, - for standard output; its schema is podm-verify/1");
   add_option(app, "--extract-bad", "FILE", options.extract_bad_path,
              "write the cells that violate a claim, and the claim, as .vtu");
-  add_option(app, "--threads", "N", options.threads, "verdicts do not depend on it [default: all cores]")
+  const bool is_on_ranks = program == Program::kPodmVerifyMpi;
+  add_option(
+      app, "--threads", "N", options.threads,
+      is_on_ranks
+          ? "threads of a rank; verdicts do not depend on it\n[default: cores of the machine / ranks on it]"
+          : "verdicts do not depend on it [default: all cores]")
       ->check(CLI::Range(1, 4096));
+  if (is_on_ranks)
+    add_option(app, "--in-process", "N", command.ranks_in_process,
+               "run N ranks as threads of one process, without mpirun [default: the processes of mpirun]")
+        ->check(CLI::Range(1, 4096));
   app.add_flag("--quiet", command.quiet, "print no text report");
-  app.set_version_flag("--version", fmt::format("{} {}\n{}", program, PODM_VERSION, build_info()));
+  app.set_version_flag("--version", fmt::format("{} {}\n{}", name_of(program), PODM_VERSION, build_info()));
 }
 
-void declare_options(CLI::App& app, TypedCommand& command, const char* program) {
-  declare_inputs(app, command);
+void declare_options(CLI::App& app, TypedCommand& command, Program program) {
+  declare_inputs(app, command, program);
   declare_selection(app, command);
   declare_claims(app, command);
   declare_report(app, command, program);
@@ -208,7 +222,6 @@ void refuse_to_overwrite_inputs(const Options& options) {
 
 void finish_options(TypedCommand& command) {
   Options& options = command.options;
-  options.threads = num_threads(options.threads);
   options.claims = CLI::detail::split(command.claims, ',');
   std::erase(options.claims, std::string());
   if (command.space == "RAS") options.space = Space::kRas;
@@ -237,8 +250,11 @@ void finish_options(TypedCommand& command) {
 
 }  // namespace
 
-CommandLine parse_command_line(int argc, const char* const* argv, const char* program) {
-  CLI::App app("Proves or refutes claims about a tetrahedral mesh file.", program);
+CommandLine parse_command_line(int argc, const char* const* argv, Program program) {
+  CLI::App app(program == Program::kPodmVerify
+                   ? "Proves or refutes claims about a tetrahedral mesh file."
+                   : "Proves or refutes claims about a tetrahedral mesh in pieces, on ranks.",
+               name_of(program));
   TypedCommand command;
   declare_options(app, command, program);
   CommandLine line;

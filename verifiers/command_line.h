@@ -13,6 +13,7 @@ inline constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 
 struct Command {
   Options options;
   bool quiet = false;
+  int ranks_in_process = 0;  ///< 0: the ranks are MPI's processes
 };
 
 /// A command to carry out, or the texts to show and the exit code instead: help, version, bad usage.
@@ -22,7 +23,10 @@ struct CommandLine {
   int exit_code = kSuccess;
 };
 
+/// The program that reads the command line has its name and its number of threads by default.
+enum class Program { kPodmVerify, kPodmVerifyMpi };
+
 /// Throws InputError.
-CommandLine parse_command_line(int argc, const char* const* argv, const char* program);
+CommandLine parse_command_line(int argc, const char* const* argv, Program program);
 
 }  // namespace podm::verify

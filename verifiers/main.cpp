@@ -8,17 +8,24 @@
 #include <new>
 
 #include "errors.h"
+#include "parallel.h"
+#include "readers/read_mesh.h"
 #include "verify.h"
 
 namespace podm::verify {
 namespace {
 
 int main_or_throw(int argc, char** argv) {
-  const CommandLine line = parse_command_line(argc, argv, "podm-verify");
+  const CommandLine line = parse_command_line(argc, argv, Program::kPodmVerify);
   fmt::print("{}", line.out);
   fmt::print(stderr, "{}", line.err);
   if (!line.command) return line.exit_code;
-  return verify(*line.command, !line.command->quiet && isatty(STDERR_FILENO) != 0);
+  Command command = *line.command;
+  command.options.threads = num_threads(command.options.threads);
+  SingleRank ranks;
+  return verify(
+      command, ranks, [&] { return read_mesh(command.options.mesh_path); },
+      !command.quiet && isatty(STDERR_FILENO) != 0);
 }
 
 int report_error(const std::string& fault, int exit_code) {

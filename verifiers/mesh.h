@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +16,7 @@ namespace podm::verify {
 
 using VertexId = std::uint32_t;  ///< position in Mesh::vertices
 using CellId = std::uint32_t;    ///< position in Mesh::cells
+using GlobalId = std::uint64_t;  ///< position of a cell, a vertex or a listed facet in the whole mesh
 using LabelValue = std::int64_t;
 using Point = std::array<double, 3>;
 
@@ -22,6 +24,8 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 
 /// The frame of the coordinates according to the file; most foreign formats do not state one.
 enum class Space { kUnstated, kRas, kLps, kVoxel };
+
+struct Part;
 
 /// A tetrahedral mesh file. Readers guarantee that every vertex id of `cells` and `facets` is the id in the
 /// file, made 0-based. An id that names no vertex is kept if it fits, and becomes kNone otherwise. The
@@ -43,6 +47,8 @@ struct Mesh {
   std::optional<std::array<double, 2>>
       promised_dihedral_deg;           ///< least and largest dihedral angle that the file promises
   std::optional<double> smoothing_mm;  ///< width by which the image was smoothed before meshing
+  /// The part of the mesh that this rank holds (ranks/part.h); null: the whole mesh.
+  std::shared_ptr<const Part> part;
 };
 
 }  // namespace podm::verify

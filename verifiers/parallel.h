@@ -11,9 +11,9 @@
 
 namespace podm::verify {
 
-/// Returns the number of threads for Options::threads; 0 means all cores.
-inline int num_threads(int asked) {
-  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+/// Returns the number of threads for Options::threads; 0 means all cores, shared by `num_ranks`.
+inline int num_threads(int asked, int num_ranks = 1) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / num_ranks);
 }
 
 /// Calls body(begin, end, thread) for disjoint ranges that cover [0, count), one range per thread. Ranges of

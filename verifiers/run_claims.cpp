@@ -11,7 +11,7 @@
 #include "claims/claims.h"
 #include "errors.h"
 #include "image/smoothing.h"
-#include "readers/read_mesh.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
@@ -33,6 +33,7 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
 }
 
 // True if all vertex ids and coordinates are sound, which every claim except structure relies on.
+// Collective.
 bool has_sound_references(const Mesh& mesh) {
   const auto is_finite = [](const Point& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
@@ -40,8 +41,9 @@ bool has_sound_references(const Mesh& mesh) {
   const auto is_in_range = [&](const std::array<VertexId, 4>& cell) {
     return std::all_of(cell.begin(), cell.end(), [&](VertexId v) { return v < mesh.vertices.size(); });
   };
-  return !mesh.cells.empty() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite) &&
-         std::all_of(mesh.cells.begin(), mesh.cells.end(), is_in_range);
+  const bool is_sound = std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite) &&
+                        std::all_of(mesh.cells.begin(), mesh.cells.end(), is_in_range);
+  return num_cells(mesh) > 0 && sum_over(ranks_of(mesh), is_sound ? 0 : 1) == 0;
 }
 
 ClaimResult not_run(const std::string& claim, const std::string& reason) {
@@ -127,8 +129,8 @@ std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh)
   return chosen;
 }
 
-Inputs read_inputs(const Options& options) {
-  Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt, std::nullopt};
+Inputs read_inputs(const Options& options, Mesh mesh) {
+  Inputs inputs{std::move(mesh), std::nullopt, std::nullopt, std::nullopt};
   if (options.space) inputs.mesh.space = *options.space;
   if (!options.image_path.empty()) inputs.image = read_image(options.image_path, options.selection);
   if (!options.size_image_path.empty()) inputs.sizes = read_size_image(options.size_image_path);

@@ -39,11 +39,11 @@ struct Claim {
 /// Returns all claims, in the order in which they run.
 const std::vector<Claim>& all_claims();
 
-/// Reads the files that `options` name. Throws InputError.
-Inputs read_inputs(const Options& options);
+/// Reads the files that `options` name beside the mesh. Throws InputError.
+Inputs read_inputs(const Options& options, Mesh mesh);
 
 /// Returns one result per name. A claim that cannot be decided is not_run, with the reason. Calls `announce`
-/// with each claim that begins.
+/// with each claim that begins. Collective; all ranks get the same results except `bad_cells`.
 std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
                                     const std::vector<std::string>& names,
                                     const std::function<void(const std::string&)>& announce);

@@ -10,7 +10,8 @@ import paths  # noqa: F401  # scripts/ on the path
 from manual import help_text
 
 BUILD = Path(os.environ["PODM_BUILD"])
-PROGRAMS = [path for path in (BUILD / "bin" / name for name in ("podm", "podm-mpi", "podm-verify", "podm-bench"))
+PROGRAMS = [path for path in (BUILD / "bin" / name for name in ("podm", "podm-mpi", "podm-verify", "podm-verify-mpi",
+                                                        "podm-bench"))
             if path.exists()]
 
 # Calls the shell's completion function with the given words; the last word may be incomplete.

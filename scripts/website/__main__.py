@@ -17,7 +17,7 @@ from . import options_page, python_api, schema_page
 from .mirror import mirror
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAMS = ("podm", "podm-mpi", "podm-verify", "podm-bench")
+PROGRAMS = ("podm", "podm-mpi", "podm-verify", "podm-verify-mpi", "podm-bench")
 STYLE = "docs/site.css"
 SCHEMAS = ("podm-bench-row", "podm-verify")
 

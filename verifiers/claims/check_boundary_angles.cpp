@@ -45,33 +45,33 @@ ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, 
   empty.bins.emplace_back("boundary_facet_angle", "degrees", 0, 180, 72);
   const Constant sine2(squared_sine(decimal_as_typed(std::min(options.angle_bound_deg, 90.0))));
   const Tally tally =
-      tally_over(adjacency.mirror.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
-        const auto f = static_cast<FacetId>(i);
-        if (!is_boundary(mesh, f, adjacency.mirror[f])) return;
-        const auto vertices = vertices_of(mesh, f);
-        const TrianglePoints p = points_of(mesh, vertices);
-        const auto angles = angles_deg(p);
-        for (const double angle : angles) t.bins[0].add(angle);
-        ++t.num_checked;
-        const int side = side_of_bound(p, sine2, t.num_exact);
-        t.num_ties += side == 0;
-        const double least = *std::min_element(angles.begin(), angles.end());
-        const auto witness = [&](const char* statement) {
-          return Witness{.statement = statement,
-                         .cells = {f / 4},
-                         .vertices = {vertices.begin(), vertices.end()},
-                         .points = {p.begin(), p.end()},
-                         .value = least,
-                         .severity = -least,
-                         .label = mesh.cell_labels.empty() ? 0 : mesh.cell_labels[f / 4]};
-        };
-        if (side <= 0) {
-          t.violation(
-              witness(side == 0 ? "angles exceed the bound (equal to it)" : "angles exceed the bound"));
-        } else if (t.closest.wants(-least)) {
-          t.closest.add(witness("angles exceed the bound"));
-        }
-      });
+      over_ranks(mesh, tally_over(own_facets(mesh), options.threads, empty, [&](std::size_t i, Tally& t) {
+                   const auto f = static_cast<FacetId>(i);
+                   if (!is_boundary(mesh, f, adjacency.mirror[f])) return;
+                   const auto vertices = vertices_of(mesh, f);
+                   const TrianglePoints p = points_of(mesh, vertices);
+                   const auto angles = angles_deg(p);
+                   for (const double angle : angles) t.bins[0].add(angle);
+                   ++t.num_checked;
+                   const int side = side_of_bound(p, sine2, t.num_exact);
+                   t.num_ties += side == 0;
+                   const double least = *std::min_element(angles.begin(), angles.end());
+                   const auto witness = [&](const char* statement) {
+                     return Witness{.statement = statement,
+                                    .cells = {global_cell(mesh, f / 4)},
+                                    .vertices = global_vertices(mesh, vertices),
+                                    .points = {p.begin(), p.end()},
+                                    .value = least,
+                                    .severity = -least,
+                                    .label = mesh.cell_labels.empty() ? 0 : mesh.cell_labels[f / 4]};
+                   };
+                   if (side <= 0) {
+                     t.violation(witness(side == 0 ? "angles exceed the bound (equal to it)"
+                                                   : "angles exceed the bound"));
+                   } else if (t.closest.wants(-least)) {
+                     t.closest.add(witness("angles exceed the bound"));
+                   }
+                 }));
   ClaimResult result = result_of("boundary_angles", tally);
   result.method = "interval arithmetic, then rationals";
   result.details()["bound_degrees"] = options.angle_bound_deg;

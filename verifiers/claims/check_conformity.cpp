@@ -19,63 +19,42 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "claims/check_conformity_schedule.h"
 #include "claims/claims.h"
+#include "claims/coincidence.h"
 #include "claims/tally.h"
 
 namespace podm::verify {
 
 namespace {
 
-std::vector<FacetId> facets_with_one_cell(const Adjacency& adjacency) {
+std::vector<FacetId> facets_with_one_cell(const Mesh& mesh, const Adjacency& adjacency) {
   std::vector<FacetId> facets;
-  for (FacetId f = 0; f < adjacency.mirror.size(); ++f)
+  const IdRange own = own_facets(mesh);
+  for (auto f = static_cast<FacetId>(own.begin); f < own.end; ++f)
     if (adjacency.mirror[f] == kNone) facets.push_back(f);
   return facets;
 }
 
 // Compares facets by place, whatever their vertices' ids are.
 Tally check_facets(const Mesh& mesh, const std::vector<FacetId>& open_facets) {
-  struct Placed {
-    std::array<Point, 3> points;
-    FacetId id;
-  };
-  std::vector<Placed> facets;
+  std::vector<Placed<std::array<Point, 3>>> facets;
   facets.reserve(open_facets.size());
   for (const FacetId f : open_facets) {
     const auto v = vertices_of(mesh, f);
-    facets.push_back({{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]}, f});
-    std::sort(facets.back().points.begin(), facets.back().points.end());
+    facets.push_back({{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]},
+                      4 * global_cell(mesh, f / 4) + f % 4});
+    std::sort(facets.back().place.begin(), facets.back().place.end());
   }
-  std::sort(facets.begin(), facets.end(), [](const Placed& a, const Placed& b) {
-    return std::tie(a.points, a.id) < std::tie(b.points, b.id);
-  });
+  facets = sorted_by_place(mesh, std::move(facets), [](const auto& points) { return points[0]; });
   Tally tally;
   tally.num_checked = facets.size();
   for (std::size_t i = 0; i + 1 < facets.size(); ++i) {
-    if (facets[i].points != facets[i + 1].points) continue;
+    if (facets[i].place != facets[i + 1].place) continue;
     tally.violation({.statement = "facets with the same coordinates are one facet",
                      .cells = {facets[i].id / 4, facets[i + 1].id / 4},
-                     .points = {facets[i].points.begin(), facets[i].points.end()}});
-  }
-  return tally;
-}
-
-// `vertices` may contain a vertex more than once.
-Tally check_vertices(const Mesh& mesh, std::vector<VertexId> vertices, const char* statement) {
-  std::sort(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
-    return std::tie(mesh.vertices[a], a) < std::tie(mesh.vertices[b], b);
-  });
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  Tally tally;
-  tally.num_checked = vertices.size();
-  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
-    if (mesh.vertices[vertices[i]] != mesh.vertices[vertices[i + 1]]) continue;
-    tally.violation({.statement = statement,
-                     .vertices = {vertices[i], vertices[i + 1]},
-                     .points = {mesh.vertices[vertices[i]]}});
+                     .points = {facets[i].place.begin(), facets[i].place.end()}});
   }
   return tally;
 }
@@ -129,12 +108,13 @@ struct Crossings {
 };
 Crossings count_crossings(const Mesh& mesh, const Adjacency& adjacency, const LeafBoundaries& boundaries) {
   Crossings crossings;
-  for (FacetId f = 0; f < adjacency.mirror.size(); ++f) {
+  const IdRange own = own_facets(mesh);
+  for (auto f = static_cast<FacetId>(own.begin); f < own.end; ++f) {
     if (adjacency.mirror[f] < f || !boundaries.has(vertices_of(mesh, f))) continue;
     ++crossings.facets;
     crossings.with_one_cell += adjacency.mirror[f] == kNone;
   }
-  return crossings;
+  return {sum_over(ranks_of(mesh), crossings.facets), sum_over(ranks_of(mesh), crossings.with_one_cell)};
 }
 
 }  // namespace
@@ -143,28 +123,29 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
                              const Options&) {
   Tally tally;
   nlohmann::json details = nlohmann::json::object();
-  const auto add = [&](const char* name, const Tally& part) {
+  const auto add_judged = [&](const char* name, const Tally& part) {
     details[name] = part.num_violations;
     tally.add(part);
   };
-  const std::vector<FacetId> open_facets = facets_with_one_cell(adjacency);
+  const auto add = [&](const char* name, const Tally& own) { add_judged(name, over_ranks(mesh, own)); };
+  const std::vector<FacetId> open_facets = facets_with_one_cell(mesh, adjacency);
   std::vector<VertexId> vertices;
   for (const FacetId f : open_facets)
     for (const VertexId v : vertices_of(mesh, f)) vertices.push_back(v);
   add("doubled_facets", check_facets(mesh, open_facets));
   add("doubled_vertices",
-      check_vertices(mesh, std::move(vertices),
-                     "vertices of boundary facets with the same coordinates are one vertex"));
-  std::string about = fmt::format("{} facets with one cell", open_facets.size());
+      check_coincident_vertices(mesh, std::move(vertices),
+                                "vertices of boundary facets with the same coordinates are one vertex"));
+  std::string about = fmt::format("{} facets with one cell", sum_over(ranks_of(mesh), open_facets.size()));
   if (schedule != nullptr) {
     const LeafBoundaries boundaries(mesh, *schedule);
     const std::vector<std::uint8_t> is_used = used_vertices(mesh);
     std::vector<VertexId> at_boundary;
     for (VertexId v = 0; v < mesh.vertices.size(); ++v)
-      if (is_used[v] && boundaries.has(v)) at_boundary.push_back(v);
+      if (is_used[v] && owns_vertex(mesh, v) && boundaries.has(v)) at_boundary.push_back(v);
     add("doubled_vertices_at_leaf_boundaries",
-        check_vertices(mesh, std::move(at_boundary),
-                       "vertices at a leaf boundary with the same coordinates are one vertex"));
+        check_coincident_vertices(mesh, std::move(at_boundary),
+                                  "vertices at a leaf boundary with the same coordinates are one vertex"));
     const Crossings crossings = count_crossings(mesh, adjacency, boundaries);
     details["facets_at_leaf_boundaries"] = crossings.facets;
     details["facets_at_leaf_boundaries_with_one_cell"] = crossings.with_one_cell;
@@ -173,7 +154,7 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
     about += fmt::format(", {} facets at leaf boundaries, {} activations of {} leaves", crossings.facets,
                          schedule->activations.size(), schedule->leaves.size());
     tally.num_checked += crossings.facets;
-    check_schedule(*schedule, add);
+    check_schedule(*schedule, add_judged);
   }
   ClaimResult result = result_of("conformity", tally);
   result.method = "equality of coordinates, integers on the leaf grid";

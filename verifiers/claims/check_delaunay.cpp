@@ -7,7 +7,8 @@
 //               circumsphere and is a violation. The local statement does not imply the global one here, as a
 //               mesh of the inside alone is not convex.
 //   Cost        About n log n. The global test asks a tree of all vertices for those in a ball slightly
-//               larger than the circumball. These are few, unless very many vertices lie near one sphere.
+//               larger than the circumball. These are few, unless very many vertices lie near one sphere. On
+//               ranks, a cell is sent to each rank with a vertex box that its ball meets.
 //   Not proved  That the mesh is the triangulation of all its vertices: it may lack cells (a part of the
 //               triangulation is Delaunay too).
 #include <fmt/format.h>
@@ -19,6 +20,7 @@
 #include "claims/tally.h"
 #include "geometry/box_tree.h"
 #include "geometry/measures.h"
+#include "geometry/rank_boxes.h"
 
 namespace podm::verify {
 
@@ -83,6 +85,48 @@ bool meets(const Ball& ball, const Bounds& box) {
   return squared <= ball.radius * ball.radius;
 }
 
+// The rank's own vertices that cells use.
+struct UsedVertices {
+  std::vector<VertexId> ids;
+  Bounds bounds = kEmptyBounds;
+  BoxTree tree;  // of positions in `ids`
+
+  explicit UsedVertices(const Mesh& mesh) : ids(own_used_vertices(mesh)), tree(boxes(mesh)) {}
+
+ private:
+  static std::vector<VertexId> own_used_vertices(const Mesh& mesh) {
+    const std::vector<std::uint8_t> is_used = used_vertices(mesh);
+    std::vector<VertexId> found;
+    for (VertexId v = 0; v < mesh.vertices.size(); ++v)
+      if (is_used[v] && owns_vertex(mesh, v)) found.push_back(v);
+    return found;
+  }
+  std::vector<Bounds> boxes(const Mesh& mesh) {
+    std::vector<Bounds> all;
+    all.reserve(ids.size());
+    for (const VertexId v : ids) {
+      all.push_back({mesh.vertices[v], mesh.vertices[v]});
+      bounds = joined(bounds, all.back());
+    }
+    return all;
+  }
+};
+
+// A cell that may be another rank's.
+struct SphereCell {
+  GlobalId id;
+  std::array<GlobalId, 4> vertices;
+  CellPoints points;
+  LabelValue label;
+};
+
+SphereCell sphere_cell(const Mesh& mesh, CellId c) {
+  SphereCell cell{global_cell(mesh, c), {}, points_of(mesh, c), 0};
+  for (std::size_t i = 0; i < 4; ++i) cell.vertices[i] = global_vertex(mesh, mesh.cells[c][i]);
+  if (!mesh.cell_labels.empty()) cell.label = mesh.cell_labels[c];
+  return cell;
+}
+
 class Spheres {
  public:
   Spheres(const Mesh& mesh, const Adjacency& adjacency) : mesh_(mesh), adjacency_(adjacency) {}
@@ -95,34 +139,42 @@ class Spheres {
     for (FacetId f = 4 * c; f < 4 * c + 4; ++f) {
       const FacetId mirror = adjacency_.mirror[f];
       if (mirror == kNone || mirror < f) continue;
-      check_vertex(c, far_vertex(mesh_, mirror), "no facet's far vertex is inside the sphere", t);
+      check_vertex(sphere_cell(mesh_, c), far_vertex(mesh_, mirror),
+                   "no facet's far vertex is inside the sphere", t);
     }
   }
-  void check_ball(CellId c, const BoxTree& vertices, const std::vector<std::uint8_t>& is_used,
-                  Tally& t) const {
-    const Ball ball = ball_around(points_of(mesh_, c));
-    vertices.for_each_near([&](const Bounds& box) { return meets(ball, box); },
-                           [&](VertexId v) {
-                             const Point& p = mesh_.vertices[v];
-                             if (!is_used[v] || !meets(ball, {p, p}) || is_own(c, v)) return;
-                             check_vertex(c, v, "no vertex is inside a circumsphere", t);
-                           });
+  // Checks the rank's own vertices that cells use.
+  void check_ball(const SphereCell& cell, const Ball& ball, const UsedVertices& vertices, Tally& t) const {
+    vertices.tree.for_each_near([&](const Bounds& box) { return meets(ball, box); },
+                                [&](std::uint32_t i) {
+                                  const VertexId v = vertices.ids[i];
+                                  const Point& p = mesh_.vertices[v];
+                                  if (!meets(ball, {p, p}) || has_vertex(cell, global_vertex(mesh_, v)))
+                                    return;
+                                  check_vertex(cell, v, "no vertex is inside a circumsphere", t);
+                                });
   }
 
  private:
-  bool is_own(CellId c, VertexId v) const {
-    return std::find(mesh_.cells[c].begin(), mesh_.cells[c].end(), v) != mesh_.cells[c].end();
+  static bool has_vertex(const SphereCell& cell, GlobalId v) {
+    return std::find(cell.vertices.begin(), cell.vertices.end(), v) != cell.vertices.end();
   }
-  void check_vertex(CellId c, VertexId v, const char* statement, Tally& t) const {
-    const CellPoints p = points_of(mesh_, c);
+  void check_vertex(const SphereCell& cell, VertexId v, const char* statement, Tally& t) const {
+    const CellPoints& p = cell.points;
     const Point& x = mesh_.vertices[v];
     ++t.num_checked;
     const int side = side_of_sphere(p[0], p[1], p[2], p[3], x, t.num_exact);
     t.num_ties += side == 0;
     if (side <= 0) return;
     const double depth = depth_of(p, x);
-    Witness witness = cell_witness(mesh_, c, statement, depth, depth);
-    witness.vertices.push_back(v);
+    Witness witness{.statement = statement,
+                    .cells = {cell.id},
+                    .vertices = {cell.vertices.begin(), cell.vertices.end()},
+                    .points = {p.begin(), p.end()},
+                    .value = depth,
+                    .severity = depth,
+                    .label = cell.label};
+    witness.vertices.push_back(global_vertex(mesh_, v));
     witness.points.push_back(x);
     t.violation(std::move(witness));
   }
@@ -139,18 +191,44 @@ class Spheres {
   const Adjacency& adjacency_;
 };
 
-BoxTree tree_of_vertices(const Mesh& mesh) {
-  std::vector<Bounds> boxes;
-  boxes.reserve(mesh.vertices.size());
-  for (const Point& p : mesh.vertices) boxes.push_back({p, p});
-  return BoxTree(boxes);
+// Holds what the global test finds on a rank, and the cells that other ranks have to test, by rank.
+struct GlobalPart {
+  Tally tally;
+  std::vector<std::vector<SphereCell>> cells_for;
+
+  void add(const GlobalPart& other) {
+    tally.add(other.tally);
+    for (std::size_t r = 0; r < cells_for.size(); ++r)
+      cells_for[r].insert(cells_for[r].end(), other.cells_for[r].begin(), other.cells_for[r].end());
+  }
+};
+
+Tally check_all_vertices(const Mesh& mesh, const Spheres& spheres, int threads) {
+  const UsedVertices vertices(mesh);
+  const RankBoxes boxes(mesh, vertices.bounds);
+  GlobalPart own =
+      tally_over(own_cells(mesh), threads, GlobalPart{{}, lists_for<SphereCell>(ranks_of(mesh))},
+                 [&](std::size_t i, GlobalPart& part) {
+                   const auto c = static_cast<CellId>(i);
+                   if (spheres.is_flat(c, part.tally)) return;
+                   const SphereCell cell = sphere_cell(mesh, c);
+                   const Ball ball = ball_around(cell.points);
+                   spheres.check_ball(cell, ball, vertices, part.tally);
+                   boxes.for_each_other([&](const Bounds& box) { return meets(ball, box); },
+                                        [&](std::size_t rank) { part.cells_for[rank].push_back(cell); });
+                 });
+  const std::vector<SphereCell> guests = exchange_joined(ranks_of(mesh), std::move(own.cells_for));
+  own.tally.add(tally_over({0, guests.size()}, threads, {}, [&](std::size_t i, Tally& t) {
+    spheres.check_ball(guests[i], ball_around(guests[i].points), vertices, t);
+  }));
+  return over_ranks(mesh, std::move(own.tally));
 }
 
 }  // namespace
 
 ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options) {
   const Spheres spheres(mesh, adjacency);
-  const Tally local = tally_over(mesh.cells.size(), options.threads, {}, [&](std::size_t i, Tally& t) {
+  const Tally own = tally_over(own_cells(mesh), options.threads, {}, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     if (spheres.is_flat(c, t)) {
       t.violation(cell_witness(mesh, c, "every cell has a circumsphere", 0, 0));
@@ -158,12 +236,7 @@ ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const O
       spheres.check_facets(c, t);
     }
   });
-  const BoxTree vertices = tree_of_vertices(mesh);
-  const std::vector<std::uint8_t> is_used = used_vertices(mesh);
-  const Tally global = tally_over(mesh.cells.size(), options.threads, {}, [&](std::size_t i, Tally& t) {
-    const auto c = static_cast<CellId>(i);
-    if (!spheres.is_flat(c, t)) spheres.check_ball(c, vertices, is_used, t);
-  });
+  const Tally local = over_ranks(mesh, own), global = check_all_vertices(mesh, spheres, options.threads);
 
   Tally both = local;
   both.add(global);

@@ -103,7 +103,7 @@ ClaimResult check_dihedral(const Mesh& mesh, const Options& options) {
   Tally empty;
   empty.bins.push_back(bins_of_degrees("dihedral_angle"));
   const CellCheck check(bounds);
-  const Tally tally = tally_over(mesh.cells.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
+  const Tally tally = tally_over(own_cells(mesh), options.threads, empty, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     const CellPoints p = points_of(mesh, c);
     const auto angles = dihedral_angles_deg(p);
@@ -125,7 +125,7 @@ ClaimResult check_dihedral(const Mesh& mesh, const Options& options) {
       t.closest.add(witness(under > over ? kLeastAngle : kLargestAngle));
     }
   });
-  ClaimResult result = result_of("dihedral", tally);
+  ClaimResult result = result_of("dihedral", over_ranks(mesh, tally));
   result.method = "interval arithmetic, then rationals";
   result.details()["least_degrees"] = bounds.least_deg ? nlohmann::json(*bounds.least_deg) : nlohmann::json();
   result.details()["largest_degrees"] =

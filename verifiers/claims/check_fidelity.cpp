@@ -42,9 +42,9 @@
 #include "claims/check_fidelity_distribution.h"
 #include "claims/check_fidelity_facets.h"
 #include "claims/check_fidelity_isosurface.h"
+#include "claims/check_fidelity_nearest.h"
 #include "claims/claims.h"
-#include "claims/worst_witnesses.h"
-#include "parallel.h"
+#include "claims/tally.h"
 
 namespace podm::verify {
 
@@ -62,8 +62,8 @@ struct Bound {
 struct OneWay {
   Distances all;
   std::map<LabelValue, Distances> of_label;
-  Distances vertices;        // mesh to image only
-  std::set<CellId> too_far;  // cells of facets with a sample beyond the bound of statement 2
+  Distances vertices;               // mesh to image only
+  std::vector<GlobalId> bad_cells;  // cells of facets with a sample beyond the bound of statement 2
   std::uint64_t far_facets = 0, samples = 0;
   WorstWitnesses worst;
 
@@ -71,10 +71,14 @@ struct OneWay {
     all.add(other.all);
     for (const auto& [label, distances] : other.of_label) of_label[label].add(distances);
     vertices.add(other.vertices);
-    too_far.insert(other.too_far.begin(), other.too_far.end());
+    bad_cells.insert(bad_cells.end(), other.bad_cells.begin(), other.bad_cells.end());
     far_facets += other.far_facets;
     samples += other.samples;
     worst.add(other.worst);
+  }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(all, of_label, vertices, far_facets, samples, worst);
   }
 };
 
@@ -82,29 +86,29 @@ class Comparison {
  public:
   Comparison(const Mesh& mesh, const Adjacency& adjacency, const Image& image, Space space, int threads)
       : threads_(threads),
+        mesh_(mesh),
         image_(image),
         frame_(image, space),
         facets_(mesh, adjacency, frame_, threads),
         midpoints_(image, frame_, LabelFunction(image)),
         isosurface_(image, frame_, midpoints_, LabelFunction(image)),
-        tree_(facets_, all_facets()) {
-    std::map<LabelValue, std::vector<std::uint32_t>> ids;
-    for (std::uint32_t f = 0; f < facets_.all().size(); ++f)
-      for (const LabelValue label : facets_.all()[f].labels)
-        if (label != 0) ids[label].push_back(f);
-    for (auto& [label, of_label] : ids) tree_of_label_.try_emplace(label, facets_, std::move(of_label));
+        nearest_facets_(mesh, facets_) {
     for (std::size_t axis = 0; axis < 3; ++axis) face_area_[axis] = area_of_face(image, axis);
   }
 
-  bool has_both() const { return !facets_.all().empty() && !midpoints_.all().empty(); }
+  // The functions are collective; each returns what all ranks find.
+  bool has_both() const {
+    return sum_over(ranks_of(mesh_), facets_.all().size()) > 0 && !midpoints_.all().empty();
+  }
 
   OneWay mesh_to_image(const Bound& largest) const {
-    return sum_over_ranges(facets_.all().size(), threads_, OneWay{},
-                           [&](std::size_t begin, std::size_t end, OneWay& way) {
-                             std::uint32_t hint = kNone;
-                             for (std::size_t f = begin; f < end; ++f)
-                               measure_facet(static_cast<std::uint32_t>(f), largest, hint, way);
-                           });
+    return over_ranks(mesh_, sum_over_ranges(facets_.all().size(), threads_, OneWay{},
+                                             [&](std::size_t begin, std::size_t end, OneWay& way) {
+                                               std::uint32_t hint = kNone;
+                                               for (std::size_t f = begin; f < end; ++f)
+                                                 measure_facet(static_cast<std::uint32_t>(f), largest, hint,
+                                                               way);
+                                             }));
   }
 
   // Returns the distances from the mesh's interface to that of the image before it was smoothed.
@@ -112,33 +116,58 @@ class Comparison {
     const LabelFunction of_voxels = LabelFunction::of_voxels(image_);
     const Midpoints midpoints(image_, frame_, of_voxels);
     const IsosurfaceDistance isosurface(image_, frame_, midpoints, of_voxels);
-    return sum_over_ranges(facets_.all().size(), threads_, OneWay{},
-                           [&](std::size_t begin, std::size_t end, OneWay& way) {
-                             std::uint32_t hint = kNone;
-                             for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
-                               facets_.sample(f, [&](const Point& p, double share) {
-                                 const auto answer = isosurface.nearest(p, hint);
-                                 way.all.add(std::sqrt(answer.squared), voxels_between(p, answer.point),
-                                             share * facets_.area(f));
-                               });
-                           })
-        .all;
+    const OneWay own = sum_over_ranges(
+        facets_.all().size(), threads_, OneWay{}, [&](std::size_t begin, std::size_t end, OneWay& way) {
+          std::uint32_t hint = kNone;
+          for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
+            facets_.sample(f, [&](const Point& p, double share) {
+              const auto answer = isosurface.nearest(p, hint);
+              way.all.add(std::sqrt(answer.squared), voxels_between(p, answer.point),
+                          share * facets_.area(f));
+            });
+        });
+    return over_ranks(mesh_, own).all;
   }
 
   OneWay image_to_mesh() const {
-    return sum_over_ranges(midpoints_.all().size(), threads_, OneWay{},
-                           [&](std::size_t begin, std::size_t end, OneWay& way) {
-                             std::uint32_t hint = kNone;
-                             for (std::size_t m = begin; m < end; ++m)
-                               measure_midpoint(midpoints_.all()[m], hint, way);
-                           });
+    OneWay own;
+    for (std::size_t begin = 0; begin < midpoints_.all().size(); begin += kMidpointsAtOnce)
+      own.add(measure_midpoints(own_midpoints(begin)));
+    return over_ranks(mesh_, own);
   }
 
  private:
-  std::vector<std::uint32_t> all_facets() const {
-    std::vector<std::uint32_t> ids(facets_.all().size());
-    for (std::uint32_t f = 0; f < ids.size(); ++f) ids[f] = f;
-    return ids;
+  static constexpr std::size_t kMidpointsAtOnce = 1 << 18;  // the memory of queries is then small
+
+  // Returns those of the next midpoints that this rank measures: each is nearest to the box of its facets.
+  std::vector<Midpoint> own_midpoints(std::size_t begin) const {
+    std::vector<Midpoint> own;
+    const std::size_t end = std::min(begin + kMidpointsAtOnce, midpoints_.all().size());
+    for (std::size_t m = begin; m < end; ++m)
+      if (nearest_facets_.is_nearest_rank(midpoints_.all()[m].world)) own.push_back(midpoints_.all()[m]);
+    return own;
+  }
+
+  // Collective.
+  OneWay measure_midpoints(const std::vector<Midpoint>& own) const {
+    std::vector<FacetQuery> queries;
+    for (const Midpoint& midpoint : own) queries.push_back({.point = midpoint.world});
+    const std::vector<NearestFacet> nearest = nearest_facets_.find(queries, threads_);
+    // The nearest facet is also that of a label if the label is on one of its sides.
+    std::vector<FacetQuery> queries_of_label;
+    std::vector<std::size_t> place(own.size());
+    for (std::size_t m = 0; m < own.size(); ++m) {
+      place[m] = queries_of_label.size();
+      for (const LabelValue label : own[m].labels)
+        if (label != 0 && !nearest[m].has(label))
+          queries_of_label.push_back({.point = own[m].world, .label = label});
+    }
+    const std::vector<NearestFacet> of_label = nearest_facets_.find(queries_of_label, threads_);
+    return sum_over_ranges(own.size(), threads_, OneWay{},
+                           [&](std::size_t begin, std::size_t end, OneWay& way) {
+                             for (std::size_t m = begin; m < end; ++m)
+                               measure_midpoint(own[m], nearest[m], of_label.data() + place[m], way);
+                           });
   }
 
   static double area_of_face(const Image& image, std::size_t axis) {
@@ -174,12 +203,12 @@ class Comparison {
       furthest_at = p;
     });
     way.far_facets += is_too_far ? 1 : 0;
-    if (is_too_far) way.too_far.insert(facet.cell);
+    if (is_too_far) way.bad_cells.push_back(global_cell(mesh_, facet.cell));
     if (!way.worst.wants(furthest)) return;
     Witness witness;
     witness.statement = "the mesh's interface lies within sqrt(3) times the bound of the image's";
-    witness.cells = {facet.cell};
-    witness.vertices.assign(facet.vertices.begin(), facet.vertices.end());
+    witness.cells = {global_cell(mesh_, facet.cell)};
+    witness.vertices = global_vertices(mesh_, facet.vertices);
     witness.points = {frame_.voxels_to_mesh(frame_.world_to_voxels(furthest_at))};
     witness.value = witness.severity = furthest;
     witness.label = facet.labels[0];
@@ -200,29 +229,20 @@ class Comparison {
     way.of_label[label].add(mm, voxels, weight);
   }
 
-  void measure_midpoint(const Midpoint& midpoint, std::uint32_t& hint, OneWay& way) const {
-    Nearest nearest;
-    if (hint != kNone) tree_.try_shape(hint, midpoint.world, nearest);
-    tree_.improve(midpoint.world, nearest);
-    hint = nearest.shape;
+  // `of_label` are the nearest facets of the midpoint's labels that the nearest facet does not have.
+  void measure_midpoint(const Midpoint& midpoint, const NearestFacet& nearest, const NearestFacet* of_label,
+                        OneWay& way) const {
     const double weight = face_area_[midpoint.axis];
     const double voxels = voxels_between(midpoint.world, nearest.point);
     way.all.add(std::sqrt(nearest.squared), voxels, weight);
     ++way.samples;
-    const auto& found = facets_.all()[nearest.shape].labels;
     for (const LabelValue label : midpoint.labels) {
       if (label == 0) continue;
-      Nearest of_label = nearest;
-      if (found[0] != label && found[1] != label) {
-        const auto tree = tree_of_label_.find(label);
-        if (tree == tree_of_label_.end()) continue;
-        of_label = {};
-        tree->second.improve(midpoint.world, of_label);
-      }
-      way.of_label[label].add(std::sqrt(of_label.squared), voxels_between(midpoint.world, of_label.point),
-                              weight);
+      const NearestFacet& facet = nearest.has(label) ? nearest : *of_label++;
+      if (std::isinf(facet.squared)) continue;
+      way.of_label[label].add(std::sqrt(facet.squared), voxels_between(midpoint.world, facet.point), weight);
     }
-    if (!way.worst.wants(voxels)) return;
+    if (voxels < way.worst.least_kept()) return;  // among equals the first points, on whatever rank
     Witness witness;
     witness.statement = "the image's interface lies near the mesh's (its maximum is not judged)";
     witness.points = {frame_.voxels_to_mesh(frame_.world_to_voxels(midpoint.world))};
@@ -232,13 +252,13 @@ class Comparison {
   }
 
   int threads_;
+  const Mesh& mesh_;
   const Image& image_;
   ImageFrame frame_;
   InterfaceFacets facets_;
   Midpoints midpoints_;
   IsosurfaceDistance isosurface_;
-  NearestTree<InterfaceFacets> tree_;
-  std::map<LabelValue, NearestTree<InterfaceFacets>> tree_of_label_;
+  NearestFacets nearest_facets_;
   std::array<double, 3> face_area_{};  // mm^2, by axis
 };
 
@@ -287,7 +307,7 @@ ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const I
   result.num_checked = to_image.samples + to_mesh.samples;
   result.num_violations =
       to_image.far_facets + (is_near(to_image.all) ? 0 : 1) + (is_near(to_mesh.all) ? 0 : 1);
-  result.bad_cells.assign(to_image.too_far.begin(), to_image.too_far.end());
+  result.bad_cells = to_image.bad_cells;
   if (result.num_violations == 0 || to_image.far_facets > 0) result.worst = to_image.worst.worst_first();
   result.details() = {{"space", describe(space)},
                       {"bound_voxels", bound.voxels},

@@ -5,6 +5,7 @@
 #include "claims/check_surface_boundary.h"
 #include "geometry/exact.h"
 #include "parallel.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
@@ -25,7 +26,7 @@ InterfaceFacets::InterfaceFacets(const Mesh& mesh, const Adjacency& adjacency, c
   });
   const CellLabelIndices label_indices(mesh);
   for (const Side& side : find_sides(mesh, adjacency, label_indices, threads))
-    if (side.across < side.label)
+    if (side.across < side.label && owns_cell(mesh, side.cell))
       facets_.push_back(
           {side.vertices, {label_indices.labels[side.label], label_indices.labels[side.across]}, side.cell});
 }

@@ -17,6 +17,7 @@ struct InterfaceFacet {
 
 class InterfaceFacets {
  public:
+  /// Collective. Takes the facets of the rank's own cells.
   InterfaceFacets(const Mesh& mesh, const Adjacency& adjacency, const ImageFrame& frame, int threads);
 
   const std::vector<InterfaceFacet>& all() const { return facets_; }

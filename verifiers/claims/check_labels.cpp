@@ -30,7 +30,7 @@
 #include "claims/check_labels_overlap.h"
 #include "claims/check_labels_reach.h"
 #include "claims/claims.h"
-#include "claims/worst_witnesses.h"
+#include "claims/tally.h"
 #include "image/label_function.h"
 #include "parallel.h"
 
@@ -40,18 +40,18 @@ namespace {
 
 constexpr std::uint64_t kVoxelsThatMustBeMeshed = 1000;
 
-struct Tally {
-  std::uint64_t exact = 0, within_rounding = 0, within_reach = 0;
-  std::vector<CellId> wrong;
-  WorstWitnesses violations, closest;
+struct LabelTally : Tally {
+  std::uint64_t within_rounding = 0, within_reach = 0;
 
-  void add(const Tally& other) {
-    exact += other.exact;
+  void add(const LabelTally& other) {
+    Tally::add(other);
     within_rounding += other.within_rounding;
     within_reach += other.within_reach;
-    wrong.insert(wrong.end(), other.wrong.begin(), other.wrong.end());
-    violations.add(other.violations);
-    closest.add(other.closest);
+  }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    Tally::transfer(stream);
+    stream(within_rounding, within_reach);
   }
 };
 
@@ -65,7 +65,7 @@ class CellLabels {
         label_function_(image),
         reach_(image, std::max(2 * delta_mm, LabelReach(image, 0).mm())) {}
 
-  void check(CellId cell, Tally& tally) const {
+  void check(CellId cell, LabelTally& tally) const {
     if (is_by_centroid()) return check_centroid(cell, tally);
     const LocatedPoint center = locator_.circumcenter(cell);
     const LabelWeights weights = label_function_.weights_at(center.voxels);
@@ -76,8 +76,7 @@ class CellLabels {
     if (lead > slack) {
       keep(tally.closest, cell, center, lead, -lead);
     } else if (-lead > slack) {
-      tally.wrong.push_back(cell);
-      keep(tally.violations, cell, center, lead, -lead);
+      add_wrong(tally, cell, center, lead, -lead);
     } else {
       decide_exactly(cell, center, tally);
     }
@@ -91,7 +90,7 @@ class CellLabels {
  private:
   // A label that wins is that of one of the eight voxels around the point. A case that rounding leaves open
   // is therefore within reach.
-  void check_centroid(CellId cell, Tally& tally) const {
+  void check_centroid(CellId cell, LabelTally& tally) const {
     const LocatedPoint center = locator_.centroid(cell);
     const LabelWeights weights = label_function_.weights_at(center.voxels);
     const double lead = lead_of(mesh_.cell_labels[cell], weights, weights.best());
@@ -100,8 +99,7 @@ class CellLabels {
     } else if (reach_.has(static_cast<std::uint32_t>(mesh_.cell_labels[cell]), center.voxels)) {
       ++tally.within_reach;
     } else {
-      tally.wrong.push_back(cell);
-      keep(tally.violations, cell, center, lead, -lead);
+      add_wrong(tally, cell, center, lead, -lead);
     }
   }
 
@@ -116,17 +114,23 @@ class CellLabels {
                                                                    : own - weights.weights[best];
   }
 
-  void decide_exactly(CellId cell, const LocatedPoint& center, Tally& tally) const {
-    ++tally.exact;
+  void decide_exactly(CellId cell, const LocatedPoint& center, LabelTally& tally) const {
+    ++tally.num_exact;
     const std::optional<std::uint32_t> label = exact_label_(cell);
     if (!label) {  // no circumcenter
-      tally.wrong.push_back(cell);
-      keep(tally.violations, cell, center, -1, 1);
+      add_wrong(tally, cell, center, -1, 1);
     } else if (static_cast<LabelValue>(*label) != mesh_.cell_labels[cell]) {
       ++tally.within_rounding;
     } else {
       keep(tally.closest, cell, center, 0, 0);
     }
+  }
+
+  void add_wrong(LabelTally& tally, CellId cell, const LocatedPoint& center, double lead,
+                 double severity) const {
+    ++tally.num_violations;
+    tally.bad_cells.push_back(global_cell(mesh_, cell));
+    keep(tally.worst, cell, center, lead, severity);
   }
 
   void keep(WorstWitnesses& list, CellId cell, const LocatedPoint& center, double lead,
@@ -135,8 +139,8 @@ class CellLabels {
     Witness witness;
     witness.statement = is_by_centroid() ? "the label is the image's at the centroid or within reach of it"
                                          : "the label is the image's at the circumcentre";
-    witness.cells = {cell};
-    witness.vertices.assign(mesh_.cells[cell].begin(), mesh_.cells[cell].end());
+    witness.cells = {global_cell(mesh_, cell)};
+    witness.vertices = global_vertices(mesh_, mesh_.cells[cell]);
     witness.points = {frame_.voxels_to_mesh(center.voxels)};
     witness.value = lead;
     witness.severity = severity;
@@ -203,18 +207,17 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   const int threads = num_threads(options.threads);
   const Space space = options.space.value_or(mesh.space);
   const CellLabels labels(mesh, image, space, options.delta_mm.value_or(0), threads);
-  const Tally tally = sum_over_ranges(mesh.cells.size(), threads, Tally{},
-                                      [&](std::size_t begin, std::size_t end, Tally& part) {
-                                        for (std::size_t cell = begin; cell < end; ++cell)
-                                          labels.check(static_cast<CellId>(cell), part);
-                                      });
+  const LabelTally tally = over_ranks(
+      mesh, tally_over(own_cells(mesh), threads, LabelTally{}, [&](std::size_t cell, LabelTally& part) {
+        labels.check(static_cast<CellId>(cell), part);
+      }));
 
   const double voxel_mm3 = labels.frame().voxel_volume_mm3();
   judge_labels(mesh, find_overlaps(mesh, image, labels.points(), voxel_mm3, threads), voxel_mm3, result);
-  result.num_checked = mesh.cells.size();
-  result.num_exact = tally.exact;
-  result.num_violations += tally.wrong.size();
-  result.bad_cells = tally.wrong;
+  result.num_checked = num_cells(mesh);
+  result.num_exact = tally.num_exact;
+  result.num_violations += tally.num_violations;
+  result.bad_cells = tally.bad_cells;
   result.details()["space"] = describe(space);
   result.details()["within_rounding"] = tally.within_rounding;
   result.details()["within_reach"] = tally.within_reach;
@@ -224,11 +227,11 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
                 "{} of {} cells have a label that the image has neither at their centroid nor within {:.3g} "
                 "mm "
                 "({} within)",
-                tally.wrong.size(), mesh.cells.size(), labels.reach_mm(), tally.within_reach)
+                tally.num_violations, num_cells(mesh), labels.reach_mm(), tally.within_reach)
           : fmt::format(
                 "{} of {} cells have another label than the image at their circumcentre ({} within rounding)",
-                tally.wrong.size(), mesh.cells.size(), tally.within_rounding);
-  const auto& witnesses = result.num_violations > 0 ? tally.violations : tally.closest;
+                tally.num_violations, num_cells(mesh), tally.within_rounding);
+  const auto& witnesses = result.num_violations > 0 ? tally.worst : tally.closest;
   result.worst.insert(result.worst.end(), witnesses.worst_first().begin(), witnesses.worst_first().end());
   result.worst.resize(std::min(result.worst.size(), kMaxWitnesses));
   result.verdict = verdict_on(result.num_violations);

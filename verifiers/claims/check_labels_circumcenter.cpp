@@ -5,6 +5,7 @@
 
 #include "image/label_function.h"
 #include "parallel.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
@@ -80,6 +81,8 @@ CircumcenterLocator::CircumcenterLocator(const Mesh& mesh, const Image& image, c
     }
   });
   Point voxels{}, world_rounding;
+  for (const std::vector<Point>& of_rank : gather(ranks_of(mesh), largest))
+    largest.insert(largest.end(), of_rank.begin(), of_rank.end());
   for (const Point& part : largest)
     for (std::size_t axis = 0; axis < 3; ++axis) voxels[axis] = std::max(voxels[axis], part[axis]);
   for (std::size_t row = 0; row < 3; ++row) {

@@ -33,8 +33,8 @@ struct LocatedPoint {
 
 class CircumcenterLocator {
  public:
-  /// Coordinates are taken to be known to 8 units of rounding of the largest term that the affine adds up. A
-  /// mesher that works in voxels rounds a coordinate five times on its way to the file.
+  /// Collective. Coordinates are taken to be known to 8 units of rounding of the largest term that the affine
+  /// adds up. A mesher that works in voxels rounds a coordinate five times on its way to the file.
   CircumcenterLocator(const Mesh& mesh, const Image& image, const ImageFrame& frame, int threads);
 
   LocatedPoint circumcenter(CellId cell) const;

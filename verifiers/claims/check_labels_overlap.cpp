@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "parallel.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
@@ -73,7 +74,13 @@ class Tetrahedron {
   std::array<std::array<double, 4>, 4> planes_;
 };
 
-// Finds the cells of voxel centers.
+// Voxels of one label that follow one another in the grid.
+struct Run {
+  std::uint64_t first, count;
+  LabelValue label;
+};
+
+// Finds the rank's own cells of voxel centers.
 class Raster {
  public:
   Raster(const Mesh& mesh, const Image& image, const std::vector<Point>& points)
@@ -95,19 +102,85 @@ class Raster {
   // Adds the voxels of these slices to `overlaps`.
   void count(std::size_t first_slice, std::size_t end_slice,
              std::unordered_map<LabelValue, LabelOverlap>& overlaps) const {
-    Box slab = box_;
-    slab.last[2] = box_.first[2] + static_cast<int>(end_slice) - 1;
-    slab.first[2] = box_.first[2] + static_cast<int>(first_slice);
+    const Box slab = slab_of(first_slice, end_slice);
     count(draw(slab), slab, overlaps);
   }
 
- private:
-  using Labels = std::vector<LabelValue>;  // of the voxels of a slab; 0: in no cell
+  // Collective. Adds the voxels in cells of all ranks. Each rank counts some slices of the grid, for which it
+  // gets what the ranks have drawn; where two have, the later one holds the later cell.
+  void count_on_ranks(int threads, std::unordered_map<LabelValue, LabelOverlap>& overlaps) const {
+    Communication& ranks = ranks_of(mesh_);
+    const Box slab = counted_slices();
+    const std::uint64_t first = first_of_row(slab.first[2], 0);
+    Labels labels(slab.length(0) * slab.length(1) * slab.length(2), kInNoCell);
+    for (const Run& run : exchange_joined(ranks, draw_runs(threads)))
+      std::fill_n(labels.begin() + static_cast<std::ptrdiff_t>(run.first - first), run.count, run.label);
+    count(labels, slab, overlaps);
+  }
 
-  // Draws all cells that reach into the slab, in their order.
+ private:
+  using Labels = std::vector<LabelValue>;  // of the voxels of a slab
+  static constexpr LabelValue kInNoCell = std::numeric_limits<LabelValue>::min();
+
+  std::uint64_t first_of_row(int k, int j) const {
+    return (static_cast<std::uint64_t>(k) * static_cast<std::uint64_t>(image_.size[1]) +
+            static_cast<std::uint64_t>(j)) *
+           static_cast<std::uint64_t>(image_.size[0]);
+  }
+
+  Box slab_of(std::size_t first_slice, std::size_t end_slice) const {
+    Box slab = box_;
+    slab.last[2] = box_.first[2] + static_cast<int>(end_slice) - 1;
+    slab.first[2] = box_.first[2] + static_cast<int>(first_slice);
+    return slab;
+  }
+
+  // Returns the slices of the grid that this rank counts.
+  Box counted_slices() const {
+    const auto num_ranks = static_cast<std::size_t>(ranks_of(mesh_).size()),
+               num_slices_of_grid = static_cast<std::size_t>(image_.size[2]);
+    const auto first_of = [&](std::size_t rank) {
+      return static_cast<int>((rank * num_slices_of_grid + num_ranks - 1) / num_ranks);
+    };
+    const auto rank = static_cast<std::size_t>(ranks_of(mesh_).rank());
+    return {{0, 0, first_of(rank)}, {image_.size[0] - 1, image_.size[1] - 1, first_of(rank + 1) - 1}};
+  }
+
+  // Returns the runs of the rank's own cells for the ranks that count them.
+  std::vector<std::vector<Run>> draw_runs(int threads) const {
+    std::vector<std::vector<std::vector<Run>>> parts(static_cast<std::size_t>(threads),
+                                                     lists_for<Run>(ranks_of(mesh_)));
+    parallel_ranges(num_slices(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+      const Box slab = slab_of(begin, end);
+      add_runs(draw(slab), slab, parts[thread]);
+    });
+    for (std::size_t t = 1; t < parts.size(); ++t)
+      for (std::size_t r = 0; r < parts[t].size(); ++r)
+        parts[0][r].insert(parts[0][r].end(), parts[t][r].begin(), parts[t][r].end());
+    return std::move(parts[0]);
+  }
+
+  void add_runs(const Labels& labels, const Box& slab, std::vector<std::vector<Run>>& lists) const {
+    const std::size_t length = slab.length(0);
+    const LabelValue* row = labels.data();
+    for (int k = slab.first[2]; k <= slab.last[2]; ++k) {
+      std::vector<Run>& runs =
+          lists[static_cast<std::size_t>(k) * lists.size() / static_cast<std::size_t>(image_.size[2])];
+      for (int j = slab.first[1]; j <= slab.last[1]; ++j, row += length) {
+        const std::uint64_t first = first_of_row(k, j) + static_cast<std::uint64_t>(slab.first[0]);
+        for (std::size_t i = 0, end = 0; i < length; i = end) {
+          for (end = i + 1; end < length && row[end] == row[i];) ++end;
+          if (row[i] != kInNoCell) runs.push_back({first + i, end - i, row[i]});
+        }
+      }
+    }
+  }
+
+  // Draws the rank's own cells that reach into the slab, in their order.
   Labels draw(const Box& slab) const {
-    Labels labels(slab.length(0) * slab.length(1) * slab.length(2));
-    for (CellId cell = 0; cell < mesh_.cells.size(); ++cell) {
+    Labels labels(slab.length(0) * slab.length(1) * slab.length(2), kInNoCell);
+    const IdRange own = own_cells(mesh_);
+    for (auto cell = static_cast<CellId>(own.begin); cell < own.end; ++cell) {
       std::array<Point, 4> v;
       for (std::size_t i = 0; i < 4; ++i) {
         v[i] = points_[mesh_.cells[cell][i]];
@@ -146,13 +219,9 @@ class Raster {
     const LabelValue* row = labels.data();
     for (int k = slab.first[2]; k <= slab.last[2]; ++k)
       for (int j = slab.first[1]; j <= slab.last[1]; ++j, row += slab.length(0)) {
-        const std::uint32_t* voxel = image_.voxels.data() +
-                                     (static_cast<std::size_t>(k) * static_cast<std::size_t>(image_.size[1]) +
-                                      static_cast<std::size_t>(j)) *
-                                         static_cast<std::size_t>(image_.size[0]) +
-                                     slab.first[0];
+        const std::uint32_t* voxel = image_.voxels.data() + first_of_row(k, j) + slab.first[0];
         for (std::size_t i = 0; i < slab.length(0); ++i) {
-          if (row[i] == 0) continue;
+          if (row[i] == 0 || row[i] == kInNoCell) continue;
           LabelOverlap& overlap = overlaps[row[i]];
           ++overlap.mesh_voxels;
           overlap.both += row[i] == static_cast<LabelValue>(voxel[i]) ? 1 : 0;
@@ -186,8 +255,9 @@ std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& 
                                                  int threads) {
   const auto num_threads = static_cast<std::size_t>(threads);
   PerThread<long double> volumes(num_threads);
-  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    for (std::size_t c = begin; c < end; ++c)
+  const IdRange own = own_cells(mesh);
+  parallel_ranges(own.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    for (std::size_t c = own.begin + begin; c < own.begin + end; ++c)
       volumes[thread][mesh.cell_labels[c]] += six_volumes(mesh.cells[c], points);
   });
   PerThread<std::uint64_t> voxels(num_threads);
@@ -199,22 +269,35 @@ std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& 
   });
   const Raster raster(mesh, image, points);
   PerThread<LabelOverlap> drawn(num_threads);
-  parallel_ranges(raster.num_slices(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    raster.count(begin, end, drawn[thread]);
-  });
+  if (ranks_of(mesh).size() > 1) {
+    raster.count_on_ranks(threads, drawn[0]);
+  } else {
+    parallel_ranges(raster.num_slices(), threads,
+                    [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                      raster.count(begin, end, drawn[thread]);
+                    });
+  }
 
   const double frame_to_world =
       voxel_volume_mm3 / (image.spacing[0] * image.spacing[1] * image.spacing[2]);  // 1 without shear
-  std::map<LabelValue, LabelOverlap> overlaps;
+  std::map<LabelValue, LabelOverlap> of_rank, overlaps;
   for (std::size_t t = 0; t < num_threads; ++t) {
     for (const auto& [label, volume] : volumes[t])
-      overlaps[label].mesh_mm3 += static_cast<double>(volume / 6) * frame_to_world;
-    for (const auto& [label, count] : voxels[t]) overlaps[label].image_voxels += count;
+      of_rank[label].mesh_mm3 += static_cast<double>(volume / 6) * frame_to_world;
     for (const auto& [label, part] : drawn[t]) {
-      overlaps[label].mesh_voxels += part.mesh_voxels;
-      overlaps[label].both += part.both;
+      of_rank[label].mesh_voxels += part.mesh_voxels;
+      of_rank[label].both += part.both;
     }
   }
+  for (const auto& part : gather(ranks_of(mesh), of_rank)) {
+    for (const auto& [label, overlap] : part) {
+      overlaps[label].mesh_mm3 += overlap.mesh_mm3;
+      overlaps[label].mesh_voxels += overlap.mesh_voxels;
+      overlaps[label].both += overlap.both;
+    }
+  }
+  for (const auto& of_thread : voxels)
+    for (const auto& [label, count] : of_thread) overlaps[label].image_voxels += count;
   overlaps.erase(0);
   return overlaps;
 }

@@ -21,7 +21,8 @@ struct LabelOverlap {
 };
 
 /// `points` are the vertices in the image frame (voxel indices times spacing). A center on a facet belongs to
-/// the later cell of those that have the facet, whatever the number of threads. The background is left out.
+/// the later cell of those that have the facet, whatever the number of threads and ranks. The background is
+/// left out. Collective.
 std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& image,
                                                  const std::vector<Point>& points, double voxel_volume_mm3,
                                                  int threads);

@@ -35,7 +35,7 @@ ClaimResult check_radius_edge(const Mesh& mesh, const Options& options) {
   empty.bins.push_back(bins_of_degrees("dihedral_angle"));
   const Rational bound = decimal_as_typed(options.radius_edge_bound);
   const Constant squared_bound(bound * bound);
-  const Tally tally = tally_over(mesh.cells.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
+  const Tally tally = tally_over(own_cells(mesh), options.threads, empty, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     const CellPoints p = points_of(mesh, c);
     const double ratio = radius_edge_ratio(p);
@@ -52,7 +52,7 @@ ClaimResult check_radius_edge(const Mesh& mesh, const Options& options) {
       t.closest.add(witness());
     }
   });
-  ClaimResult result = result_of("radius_edge", tally);
+  ClaimResult result = result_of("radius_edge", over_ranks(mesh, tally));
   result.method = "interval arithmetic, then rationals";
   result.details()["bound"] = options.radius_edge_bound;
   result.reason = fmt::format("{} of {} cells at or over {}; largest {:.6g}", result.num_violations,

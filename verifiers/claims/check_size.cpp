@@ -180,9 +180,11 @@ std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, con
 // afar.
 void refuse_what_bounds_no_cell(const Mesh& mesh, const SizeImage& sizes, const Options& options) {
   const SizeField field(sizes, options.size_factor, mesh.space);
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    if (std::isfinite(field.bound_at_center(points_of(mesh, static_cast<CellId>(c))))) return;
-  throw InputError(
+  const IdRange own = own_cells(mesh);
+  std::size_t c = own.begin;
+  while (c < own.end && !std::isfinite(field.bound_at_center(points_of(mesh, static_cast<CellId>(c))))) ++c;
+  if (sum_over(ranks_of(mesh), c < own.end ? 1 : 0) > 0) return;
+  throw RefusedByAll(
       sizes.path +
       ": no cell of the mesh has its circumcentre where the size image has a size above 0 mm; is "
       "it in another space?");
@@ -222,11 +224,11 @@ ClaimResult result_of(const Tally& tally, const SizeBounds& bounds, const Option
 
 ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options) {
   if (const auto reason = why_not_run(mesh, image, sizes, options)) return not_run(*reason);
-  if (sizes != nullptr && !options.grade && !mesh.cells.empty())
+  if (sizes != nullptr && !options.grade && num_cells(mesh) > 0)
     refuse_what_bounds_no_cell(mesh, *sizes, options);
   const SizeBounds bounds(mesh, image, sizes, options);
-  const Tally tally = tally_over(
-      mesh.cells.size(), options.threads, empty_tally(options, sizes), [&](std::size_t i, Tally& t) {
+  const Tally tally =
+      tally_over(own_cells(mesh), options.threads, empty_tally(options, sizes), [&](std::size_t i, Tally& t) {
         const auto c = static_cast<CellId>(i);
         const CellPoints p = points_of(mesh, c);
         const double radius = circumradius(p);
@@ -241,7 +243,7 @@ ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* si
         Witness witness = cell_witness(mesh, c, "circumradius within the bound", radius, severity);
         is_over ? t.violation(std::move(witness)) : t.closest.add(std::move(witness));
       });
-  return result_of(tally, bounds, options);
+  return result_of(over_ranks(mesh, tally), bounds, options);
 }
 
 }  // namespace podm::verify

@@ -14,11 +14,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <tuple>
 #include <utility>
 
 #include "claims/check_structure_overlap.h"
 #include "claims/claims.h"
+#include "claims/coincidence.h"
 #include "geometry/measures.h"
 
 namespace podm::verify {
@@ -26,25 +26,29 @@ namespace podm::verify {
 namespace {
 
 Tally check_references(const Mesh& mesh, int threads) {
-  Tally tally = tally_over(mesh.cells.size(), threads, {}, [&](std::size_t c, Tally& t) {
+  Tally tally = tally_over(own_cells(mesh), threads, {}, [&](std::size_t c, Tally& t) {
     ++t.num_checked;
     for (const VertexId v : mesh.cells[c]) {
       if (v < mesh.vertices.size()) continue;
-      t.violation(
-          {.statement = "vertex ids are in range", .cells = {static_cast<CellId>(c)}, .vertices = {v}});
+      t.violation({.statement = "vertex ids are in range",
+                   .cells = {global_cell(mesh, static_cast<CellId>(c))},
+                   .vertices = {v}});
       return;
     }
   });
-  tally.add(tally_over(mesh.vertices.size(), threads, {}, [&](std::size_t v, Tally& t) {
+  tally.add(tally_over({0, mesh.vertices.size()}, threads, {}, [&](std::size_t v, Tally& t) {
+    if (!owns_vertex(mesh, v)) return;
     const Point& p = mesh.vertices[v];
     ++t.num_checked;
     if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) return;
-    t.violation({.statement = "coordinates are finite", .vertices = {static_cast<VertexId>(v)}});
+    t.violation(
+        {.statement = "coordinates are finite", .vertices = {global_vertex(mesh, static_cast<VertexId>(v))}});
   }));
-  if (mesh.cells.empty()) tally.violation({.statement = "the mesh has cells"});
+  if (num_cells(mesh) == 0 && is_first_rank(mesh)) tally.violation({.statement = "the mesh has cells"});
   return tally;
 }
 
+// The counts are those of all ranks, `num_exact` that of the rank's own cells.
 struct Orientations {
   std::uint64_t positive = 0, negative = 0, flat = 0, num_exact = 0;
   std::vector<std::int8_t> of_cell;
@@ -55,19 +59,25 @@ struct Orientations {
 Orientations find_orientations(const Mesh& mesh, int threads) {
   Orientations all;
   all.of_cell.resize(mesh.cells.size());
-  const Tally tally = tally_over(mesh.cells.size(), threads, {}, [&](std::size_t c, Tally& t) {
+  const Tally tally = tally_over({0, mesh.cells.size()}, threads, {}, [&](std::size_t c, Tally& t) {
     const CellPoints p = points_of(mesh, static_cast<CellId>(c));
-    all.of_cell[c] = static_cast<std::int8_t>(orientation(p[0], p[1], p[2], p[3], t.num_exact));
+    std::uint64_t num_exact = 0;
+    all.of_cell[c] = static_cast<std::int8_t>(orientation(p[0], p[1], p[2], p[3], num_exact));
+    if (owns_cell(mesh, static_cast<CellId>(c))) t.num_exact += num_exact;
   });
   all.num_exact = tally.num_exact;
-  for (const std::int8_t sign : all.of_cell) ++(sign > 0 ? all.positive : sign < 0 ? all.negative : all.flat);
+  const IdRange own = own_cells(mesh);
+  for (std::size_t c = own.begin; c < own.end; ++c)
+    ++(all.of_cell[c] > 0 ? all.positive : all.of_cell[c] < 0 ? all.negative : all.flat);
+  for (std::uint64_t* count : {&all.positive, &all.negative, &all.flat})
+    *count = sum_over(ranks_of(mesh), *count);
   return all;
 }
 
 Tally check_orientations(const Mesh& mesh, const Orientations& orientations, int threads) {
   Tally exact;
   exact.num_exact = orientations.num_exact;
-  exact.add(tally_over(mesh.cells.size(), threads, {}, [&](std::size_t i, Tally& t) {
+  exact.add(tally_over(own_cells(mesh), threads, {}, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     ++t.num_checked;
     if (orientations.of_cell[c] > 0) return;
@@ -87,12 +97,12 @@ bool is_first_of_duplicates(const Mesh& mesh, FacetId f, FacetId g) {
 Witness facet_witness(const Mesh& mesh, const char* statement, FacetId f) {
   const auto v = vertices_of(mesh, f);
   const TrianglePoints p = points_of(mesh, v);
-  return {.statement = statement, .vertices = {v.begin(), v.end()}, .points = {p.begin(), p.end()}};
+  return {.statement = statement, .vertices = global_vertices(mesh, v), .points = {p.begin(), p.end()}};
 }
 
 void report_duplicates(const Mesh& mesh, FacetId f, FacetId g, Tally& t) {
   Witness witness = cell_witness(mesh, f / 4, "no two cells have the same vertices", 0, 0);
-  witness.cells.push_back(g / 4);
+  witness.cells.push_back(global_cell(mesh, g / 4));
   t.violation(std::move(witness));
 }
 
@@ -108,14 +118,14 @@ void check_pair(const Mesh& mesh, const Orientations& orientations, FacetId f, F
   if (is_first_of_duplicates(mesh, f, mirror)) report_duplicates(mesh, f, mirror, t);
   if (far_vertex(mesh, f) == far_vertex(mesh, mirror)) return;
   Witness witness = facet_witness(mesh, "the two cells of a facet are on opposite sides", f);
-  witness.cells = {f / 4, mirror / 4};
+  witness.cells = {global_cell(mesh, f / 4), global_cell(mesh, mirror / 4)};
   t.violation(std::move(witness));
 }
 
 void check_crowd(const Mesh& mesh, std::vector<FacetId> crowd, Tally& t) {
   Witness witness = facet_witness(mesh, "a facet has at most two cells", crowd[0]);
   witness.value = witness.severity = static_cast<double>(crowd.size());
-  for (const FacetId f : crowd) witness.cells.push_back(f / 4);
+  for (const FacetId f : crowd) witness.cells.push_back(global_cell(mesh, f / 4));
   ++t.num_checked;
   t.violation(std::move(witness));
   std::sort(crowd.begin(), crowd.end(), [&](FacetId f, FacetId g) {
@@ -128,38 +138,21 @@ void check_crowd(const Mesh& mesh, std::vector<FacetId> crowd, Tally& t) {
 
 Tally check_facets(const Mesh& mesh, const Adjacency& adjacency, const Orientations& orientations,
                    int threads) {
-  Tally tally = tally_over(adjacency.mirror.size(), threads, {}, [&](std::size_t f, Tally& t) {
+  Tally tally = tally_over(own_facets(mesh), threads, {}, [&](std::size_t f, Tally& t) {
     const FacetId mirror = adjacency.mirror[f];
     if (mirror == kNone || mirror < f) return;
     check_pair(mesh, orientations, static_cast<FacetId>(f), mirror, t);
   });
-  for (const auto& crowd : adjacency.crowded) check_crowd(mesh, crowd, tally);
-  return tally;
-}
-
-Tally check_coincident_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& is_used) {
-  std::vector<VertexId> order;
-  for (VertexId v = 0; v < mesh.vertices.size(); ++v)
-    if (is_used[v]) order.push_back(v);
-  std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
-    return std::tie(mesh.vertices[a], a) < std::tie(mesh.vertices[b], b);  // -0 equals 0
-  });
-  Tally tally;
-  for (std::size_t i = 0; i + 1 < order.size(); ++i) {
-    ++tally.num_checked;
-    if (mesh.vertices[order[i]] != mesh.vertices[order[i + 1]]) continue;
-    tally.violation({.statement = "no two vertices have the same coordinates",
-                     .vertices = {order[i], order[i + 1]},
-                     .points = {mesh.vertices[order[i]]}});
-  }
+  for (const auto& crowd : adjacency.crowded)
+    if (owns_cell(mesh, crowd[0] / 4)) check_crowd(mesh, crowd, tally);
   return tally;
 }
 
 std::string sentence(const ClaimResult& result, const Mesh& mesh, bool is_left_handed) {
   if (result.num_violations == 0)
-    return fmt::format("{} cells, {} vertices, all sound; {} vertices unused", mesh.cells.size(),
-                       mesh.vertices.size(), result.num_warnings);
-  if (is_left_handed && result.num_violations == mesh.cells.size())
+    return fmt::format("{} cells, {} vertices, all sound; {} vertices unused", num_cells(mesh),
+                       num_vertices(mesh), result.num_warnings);
+  if (is_left_handed && result.num_violations == num_cells(mesh))
     return "all cells are negatively oriented: the mesh is sound but left-handed";
   return fmt::format("{} violations, the first: violated: {}", result.num_violations,
                      result.worst[0].statement);
@@ -168,7 +161,7 @@ std::string sentence(const ClaimResult& result, const Mesh& mesh, bool is_left_h
 }  // namespace
 
 ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options) {
-  Tally tally = check_references(mesh, options.threads);
+  Tally tally = over_ranks(mesh, check_references(mesh, options.threads));
   const bool can_go_on = tally.num_violations == 0;
   bool is_left_handed = false;
   std::uint64_t num_orphans = 0;
@@ -180,15 +173,25 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
                {"negative_cells", orientations.negative},
                {"flat_cells", orientations.flat},
                {"is_left_handed", is_left_handed}};
-    const auto add = [&](const char* name, const Tally& part) {
+    const auto add = [&](const char* name, const Tally& own) {
+      const Tally part = over_ranks(mesh, own);
       details["violations"][name] = part.num_violations;
       tally.add(part);
     };
     add("orientation", check_orientations(mesh, orientations, options.threads));
     add("facets", check_facets(mesh, adjacency, orientations, options.threads));
     const std::vector<std::uint8_t> is_used = used_vertices(mesh);
-    num_orphans = static_cast<std::uint64_t>(std::count(is_used.begin(), is_used.end(), 0));
-    add("coincident_vertices", check_coincident_vertices(mesh, is_used));
+    std::vector<VertexId> used;
+    for (VertexId v = 0; v < mesh.vertices.size(); ++v) {
+      if (!owns_vertex(mesh, v)) continue;
+      if (is_used[v])
+        used.push_back(v);
+      else
+        ++num_orphans;
+    }
+    num_orphans = sum_over(ranks_of(mesh), num_orphans);
+    add("coincident_vertices",
+        check_coincident_vertices(mesh, used, "no two vertices have the same coordinates"));
     if (orientations.is_consistent()) {
       add("overlap", check_overlap(mesh, adjacency, is_left_handed, options.threads));
       add("hanging_vertices", check_hanging_vertices(mesh, adjacency, options.threads));

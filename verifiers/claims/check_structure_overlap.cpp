@@ -4,52 +4,76 @@
 
 #include "geometry/box_tree.h"
 #include "geometry/measures.h"
+#include "geometry/rank_boxes.h"
 
 namespace podm::verify {
 
 namespace {
 
-// The boundary facets of a mesh, turned so that their own cells lie on the positive side.
+// A boundary facet that may be another rank's, turned so that its own cell lies on the positive side.
+struct BoundaryFacet {
+  GlobalId cell;
+  std::array<GlobalId, 3> vertices;
+  TrianglePoints points;
+};
+
+// The boundary facets near the rank's own cells and vertices.
 class BoundaryFacets {
  public:
   BoundaryFacets(const Mesh& mesh, const Adjacency& adjacency, bool is_left_handed)
-      : mesh_(mesh), is_left_handed_(is_left_handed), facets_(without_mirror(adjacency)), tree_(boxes()) {}
+      : facets_(near_rank(mesh, without_mirror(mesh, adjacency, is_left_handed))), tree_(boxes()) {}
 
-  CellId own_cell(std::size_t i) const { return facets_[i] / 4; }
-  std::array<VertexId, 3> vertices(std::size_t i) const {
-    auto v = vertices_of(mesh_, facets_[i]);
-    if (is_left_handed_) std::swap(v[1], v[2]);
-    return v;
-  }
-  TrianglePoints points(std::size_t i) const { return points_of(mesh_, vertices(i)); }
-
-  /// Calls visit(facet, points) for every facet whose box meets `box`.
+  /// Calls visit(facet) for every facet whose box meets `box`.
   template <class Visit>
   void for_each_near(const Bounds& box, const Visit& visit) const {
     tree_.for_each_near([&](const Bounds& other) { return meet(box, other); },
                         [&](std::size_t i) {
-                          const TrianglePoints p = points(i);
-                          if (meet(box, bounds_of(p))) visit(i, p);
+                          if (meet(box, bounds_of(facets_[i].points))) visit(facets_[i]);
                         });
   }
 
  private:
-  static std::vector<FacetId> without_mirror(const Adjacency& adjacency) {
-    std::vector<FacetId> facets;
-    for (FacetId f = 0; f < adjacency.mirror.size(); ++f)
-      if (adjacency.mirror[f] == kNone) facets.push_back(f);
+  static std::vector<BoundaryFacet> without_mirror(const Mesh& mesh, const Adjacency& adjacency,
+                                                   bool is_left_handed) {
+    std::vector<BoundaryFacet> facets;
+    const IdRange own = own_facets(mesh);
+    for (auto f = static_cast<FacetId>(own.begin); f < own.end; ++f) {
+      if (adjacency.mirror[f] != kNone) continue;
+      auto v = vertices_of(mesh, f);
+      if (is_left_handed) std::swap(v[1], v[2]);
+      facets.push_back({global_cell(mesh, f / 4),
+                        {global_vertex(mesh, v[0]), global_vertex(mesh, v[1]), global_vertex(mesh, v[2])},
+                        points_of(mesh, v)});
+    }
     return facets;
+  }
+  // Collective. Returns the facets of all ranks whose boxes meet that of the rank's own cells and vertices. A
+  // vertex of its own may be on cells of other ranks only.
+  static std::vector<BoundaryFacet> near_rank(const Mesh& mesh, std::vector<BoundaryFacet> own) {
+    Bounds of_rank = kEmptyBounds;
+    const IdRange cells = own_cells(mesh);
+    for (auto c = static_cast<CellId>(cells.begin); c < cells.end; ++c)
+      of_rank = joined(of_rank, bounds_of(points_of(mesh, c)));
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      if (owns_vertex(mesh, v)) of_rank = joined(of_rank, {mesh.vertices[v], mesh.vertices[v]});
+    const RankBoxes boxes(mesh, of_rank);
+    auto lists = lists_for<BoundaryFacet>(ranks_of(mesh));
+    for (const BoundaryFacet& facet : own) {
+      const Bounds near = bounds_of(facet.points);
+      boxes.for_each_other([&](const Bounds& box) { return meet(near, box); },
+                           [&](std::size_t rank) { lists[rank].push_back(facet); });
+    }
+    lists[static_cast<std::size_t>(ranks_of(mesh).rank())] = std::move(own);
+    return exchange_joined(ranks_of(mesh), std::move(lists));
   }
   std::vector<Bounds> boxes() const {
     std::vector<Bounds> boxes;
     boxes.reserve(facets_.size());
-    for (std::size_t i = 0; i < facets_.size(); ++i) boxes.push_back(bounds_of(points(i)));
+    for (const BoundaryFacet& facet : facets_) boxes.push_back(bounds_of(facet.points));
     return boxes;
   }
 
-  const Mesh& mesh_;
-  bool is_left_handed_;
-  std::vector<FacetId> facets_;
+  std::vector<BoundaryFacet> facets_;
   BoxTree tree_;
 };
 
@@ -138,18 +162,17 @@ bool is_in_triangle(const TrianglePoints& p, const Point& x, std::uint64_t& num_
 
 Tally check_overlap(const Mesh& mesh, const Adjacency& adjacency, bool is_left_handed, int threads) {
   const BoundaryFacets facets(mesh, adjacency, is_left_handed);
-  return tally_over(mesh.cells.size(), threads, {}, [&](std::size_t i, Tally& t) {
+  return tally_over(own_cells(mesh), threads, {}, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     const CellPoints cell = points_of(mesh, c);
-    facets.for_each_near(bounds_of(cell), [&](std::size_t facet, const TrianglePoints& p) {
-      if (facets.own_cell(facet) == c) return;
+    facets.for_each_near(bounds_of(cell), [&](const BoundaryFacet& facet) {
+      if (facet.cell == global_cell(mesh, c)) return;
       ++t.num_checked;
-      if (!is_just_inside(cell, p, t.num_exact)) return;
-      const auto v = facets.vertices(facet);
+      if (!is_just_inside(cell, facet.points, t.num_exact)) return;
       t.violation({.statement = "no cells overlap",
-                   .cells = {facets.own_cell(facet), c},
-                   .vertices = {v.begin(), v.end()},
-                   .points = {p.begin(), p.end()}});
+                   .cells = {facet.cell, global_cell(mesh, c)},
+                   .vertices = {facet.vertices.begin(), facet.vertices.end()},
+                   .points = {facet.points.begin(), facet.points.end()}});
     });
   });
 }
@@ -157,17 +180,18 @@ Tally check_overlap(const Mesh& mesh, const Adjacency& adjacency, bool is_left_h
 Tally check_hanging_vertices(const Mesh& mesh, const Adjacency& adjacency, int threads) {
   const BoundaryFacets facets(mesh, adjacency, false);
   const std::vector<std::uint8_t> is_used = used_vertices(mesh);
-  return tally_over(mesh.vertices.size(), threads, {}, [&](std::size_t i, Tally& t) {
-    if (!is_used[i]) return;
+  return tally_over({0, mesh.vertices.size()}, threads, {}, [&](std::size_t i, Tally& t) {
+    if (!is_used[i] || !owns_vertex(mesh, i)) return;
     const Point& x = mesh.vertices[i];
-    facets.for_each_near({x, x}, [&](std::size_t facet, const TrianglePoints& p) {
+    facets.for_each_near({x, x}, [&](const BoundaryFacet& facet) {
+      const TrianglePoints& p = facet.points;
       if (std::find(p.begin(), p.end(), x) != p.end()) return;  // coincident ones are another test's
       ++t.num_checked;
       if (orientation(p[0], p[1], p[2], x, t.num_exact) != 0 || !is_in_triangle(p, x, t.num_exact)) return;
-      const auto v = facets.vertices(facet);
+      const auto& v = facet.vertices;
       t.violation({.statement = "no vertex hangs on a facet or edge",
-                   .cells = {facets.own_cell(facet)},
-                   .vertices = {static_cast<VertexId>(i), v[0], v[1], v[2]},
+                   .cells = {facet.cell},
+                   .vertices = {global_vertex(mesh, static_cast<VertexId>(i)), v[0], v[1], v[2]},
                    .points = {x}});
     });
   });

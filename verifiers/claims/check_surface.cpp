@@ -20,13 +20,13 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <numeric>
 
 #include "claims/check_surface_boundary.h"
 #include "claims/check_surface_listed.h"
 #include "claims/check_surface_topology.h"
 #include "claims/claims.h"
-#include "claims/worst_witnesses.h"
+#include "claims/tally.h"
 #include "image/image_topology.h"
 #include "parallel.h"
 
@@ -73,57 +73,71 @@ class Report {
 
   void add(const Finding& finding) {
     const bool is_violation = finding.kind == FindingKind::kUnbalancedEdge;
-    if (is_violation) bad_cells_.insert(finding.cells.begin(), finding.cells.end());
     Witness witness;
     witness.statement = statement(finding.kind);
-    witness.cells = finding.cells;
-    witness.vertices = finding.vertices;
+    for (const CellId c : finding.cells) witness.cells.push_back(global_cell(mesh_, c));
+    witness.vertices = global_vertices(mesh_, finding.vertices);
+    if (is_violation)
+      places_.bad_cells.insert(places_.bad_cells.end(), witness.cells.begin(), witness.cells.end());
     for (const VertexId v : finding.vertices) witness.points.push_back(mesh_.vertices[v]);
     witness.value = static_cast<double>(finding.cells.size());
     witness.severity = is_violation ? 3 : finding.is_on_triple_line ? 0 : 1;
     witness.label = label_indices_.labels[finding.label];
-    witnesses_.add(witness);
+    places_.witnesses.add(witness);
   }
 
   void add(const char* listed_statement, const std::vector<std::uint32_t>& facets) {
     for (const std::uint32_t f : facets) {
-      if (!witnesses_.wants(2)) return;
       Witness witness;
       witness.statement = listed_statement;
       for (const VertexId v : mesh_.facets[f]) {
-        witness.vertices.push_back(v);
+        witness.vertices.push_back(global_vertex(mesh_, v));
         if (v < mesh_.vertices.size()) witness.points.push_back(mesh_.vertices[v]);
       }
-      witness.value = f;
+      witness.value = static_cast<double>(global_facet(mesh_, f));
       witness.severity = 2;
-      witnesses_.add(witness);
+      places_.witnesses.add(witness);
     }
   }
 
+  // Collective.
   void finish(ClaimResult& result) const {
-    result.worst = witnesses_.worst_first();
-    result.bad_cells.assign(bad_cells_.begin(), bad_cells_.end());
+    const Places all = over_ranks(mesh_, places_);
+    result.worst = all.witnesses.worst_first();
+    result.bad_cells = all.bad_cells;
   }
 
  private:
+  struct Places {
+    WorstWitnesses witnesses;
+    std::vector<GlobalId> bad_cells;
+
+    void add(const Places& other) { witnesses.add(other.witnesses); }
+    template <class Stream>
+    void transfer(Stream& stream) {
+      stream(witnesses);
+    }
+  };
+
   const Mesh& mesh_;
   const CellLabelIndices& label_indices_;
-  WorstWitnesses witnesses_;
-  std::set<CellId> bad_cells_;
+  Places places_;
 };
 
 // Judges statement 2. A list without labels may be of any facets: differences are then warnings.
 std::uint64_t judge_listed(const Mesh& mesh, const ListedFacets& listed, Report& report,
                            ClaimResult& result) {
-  if (listed.listed == 0) return 0;
-  result.details()["listed_facets"] = {{"listed", listed.listed},
-                                       {"missing", listed.missing},
-                                       {"stray", listed.stray.size()},
-                                       {"mislabelled", listed.mislabelled.size()},
-                                       {"turned", listed.turned.size()}};
-  const std::uint64_t faults =
-      listed.missing + listed.stray.size() + listed.mislabelled.size() + listed.turned.size();
-  if (mesh.facet_labels.empty()) {
+  if (num_facets(mesh) == 0) return 0;
+  const std::vector<std::uint64_t> counts =
+      sum_over(ranks_of(mesh), std::vector<std::uint64_t>{listed.missing, listed.stray.size(),
+                                                          listed.mislabelled.size(), listed.turned.size()});
+  result.details()["listed_facets"] = {{"listed", num_facets(mesh)},
+                                       {"missing", counts[0]},
+                                       {"stray", counts[1]},
+                                       {"mislabelled", counts[2]},
+                                       {"turned", counts[3]}};
+  const std::uint64_t faults = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  if (!has_facet_labels(mesh)) {
     result.num_warnings += faults;
     return 0;
   }
@@ -162,13 +176,16 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
   const CellLabelIndices label_indices(mesh);
   const int threads = num_threads(options.threads);
   const std::vector<Side> sides = find_sides(mesh, adjacency, label_indices, threads);
-  if (sides.empty()) {
+  const auto is_own = [&](const Side& side) { return owns_cell(mesh, side.cell); };
+  const std::uint64_t num_sides =
+      sum_over(ranks_of(mesh), static_cast<std::uint64_t>(std::count_if(sides.begin(), sides.end(), is_own)));
+  if (num_sides == 0) {
     result.reason = "the mesh has no cells of a label";
     return result;
   }
   const SidesOfVertex sides_of(sides, mesh.vertices.size());
   const BoundaryFindings boundary =
-      inspect_boundary(sides, sides_of, mesh.vertices.size(), label_indices.labels.size(), threads);
+      inspect_boundary(mesh, sides, sides_of, label_indices.labels.size(), threads);
   const std::vector<MeshTopology> topology =
       find_mesh_topology(mesh, adjacency, label_indices, boundary, threads);
 
@@ -178,7 +195,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
   for (const BoundaryCounts& counts : boundary.of_label) sum.add(counts);
   const std::uint64_t listed_faults =
       judge_listed(mesh, inspect_listed_facets(mesh, label_indices, sides, sides_of), report, result);
-  result.num_checked = sides.size();
+  result.num_checked = num_sides;
   result.num_violations = sum.unbalanced_edges + listed_faults;
   result.num_warnings += sum.non_manifold_edges + sum.non_manifold_edges_on_triple_lines +
                          sum.non_manifold_vertices + sum.non_manifold_vertices_on_triple_lines;

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "parallel.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
@@ -158,12 +159,16 @@ class VertexInspector {
 }  // namespace
 
 CellLabelIndices::CellLabelIndices(const Mesh& mesh) : labels{0}, of_cell(mesh.cells.size(), 1) {
-  if (mesh.cell_labels.size() != mesh.cells.size()) {
+  if (!has_cell_labels(mesh)) {
     labels.push_back(1);
     return;
   }
   std::unordered_map<LabelValue, LabelIndex> index_of;
   for (const LabelValue label : mesh.cell_labels) index_of.emplace(label, 0);
+  std::vector<LabelValue> own;
+  for (const auto& [label, index] : index_of) own.push_back(label);
+  for (const std::vector<LabelValue>& part : gather(ranks_of(mesh), own))
+    for (const LabelValue label : part) index_of.emplace(label, 0);
   index_of.erase(0);
   for (const auto& [label, index] : index_of) labels.push_back(label);
   std::sort(labels.begin() + 1, labels.end());
@@ -212,14 +217,15 @@ void BoundaryCounts::add(const BoundaryCounts& other) {
   non_manifold_vertices_on_triple_lines += other.non_manifold_vertices_on_triple_lines;
 }
 
-BoundaryFindings inspect_boundary(const std::vector<Side>& sides, const SidesOfVertex& sides_of,
-                                  std::size_t num_vertices, std::size_t num_labels, int threads) {
+BoundaryFindings inspect_boundary(const Mesh& mesh, const std::vector<Side>& sides,
+                                  const SidesOfVertex& sides_of, std::size_t num_labels, int threads) {
   std::vector<BoundaryFindings> parts(static_cast<std::size_t>(threads));
   for (BoundaryFindings& part : parts) part.of_label.resize(num_labels);
-  parallel_ranges(num_vertices, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+  parallel_ranges(mesh.vertices.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
     VertexInspector inspector(sides, parts[thread]);
     for (std::size_t v = begin; v < end; ++v) {
       const auto id = static_cast<VertexId>(v);
+      if (!owns_vertex(mesh, v)) continue;
       inspector.inspect(id, sides_of.begin(id), sides_of.end(id));
     }
   });
@@ -230,9 +236,14 @@ BoundaryFindings inspect_boundary(const std::vector<Side>& sides, const SidesOfV
     all.findings.insert(all.findings.end(), parts[t].findings.begin(), parts[t].findings.end());
   }
   for (const Side& side : sides) {
+    if (!owns_cell(mesh, side.cell)) continue;
     ++all.of_label[side.label].facets;
     if (side.across == 0) ++all.of_label[kAllLabels].facets;
   }
+  const std::vector<std::vector<BoundaryCounts>> of_ranks = gather(ranks_of(mesh), all.of_label);
+  all.of_label = of_ranks[0];
+  for (std::size_t r = 1; r < of_ranks.size(); ++r)
+    for (std::size_t label = 0; label < num_labels; ++label) all.of_label[label].add(of_ranks[r][label]);
   return all;
 }
 

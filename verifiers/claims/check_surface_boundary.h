@@ -14,10 +14,10 @@ namespace podm::verify {
 using LabelIndex = std::uint32_t;
 
 struct CellLabelIndices {
-  std::vector<LabelValue> labels;  ///< labels[0] = 0
+  std::vector<LabelValue> labels;  ///< labels[0] = 0; the same on all ranks
   std::vector<LabelIndex> of_cell;
 
-  /// A mesh without labels counts as a mesh of a single label, 1.
+  /// Collective. A mesh without labels counts as a mesh of a single label, 1.
   explicit CellLabelIndices(const Mesh& mesh);
 };
 
@@ -29,6 +29,8 @@ struct Side {
   CellId cell = 0;
 };
 
+/// Returns the sides of all cells of the rank. Those of cells of other ranks are right around the vertices of
+/// the rank's own cells.
 std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency,
                              const CellLabelIndices& label_indices, int threads);
 
@@ -68,11 +70,12 @@ struct Finding {
 inline constexpr LabelIndex kAllLabels = 0;  ///< the background has no boundary of its own
 
 struct BoundaryFindings {
-  std::vector<BoundaryCounts> of_label;  ///< by LabelIndex; kAllLabels: all together
+  std::vector<BoundaryCounts> of_label;  ///< by LabelIndex, of all ranks; kAllLabels: all together
   std::vector<Finding> findings;         ///< every unbalanced edge; of the other kinds the first few
 };
 
-BoundaryFindings inspect_boundary(const std::vector<Side>& sides, const SidesOfVertex& sides_of,
-                                  std::size_t num_vertices, std::size_t num_labels, int threads);
+/// Collective. The findings are those at the rank's own vertices; an edge belongs to its lesser vertex.
+BoundaryFindings inspect_boundary(const Mesh& mesh, const std::vector<Side>& sides,
+                                  const SidesOfVertex& sides_of, std::size_t num_labels, int threads);
 
 }  // namespace podm::verify

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ranks/part.h"
+
 namespace podm::verify {
 
 namespace {
@@ -25,15 +27,20 @@ class Lister {
   ListedFacets inspect() {
     for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f) inspect(f);
     for (std::size_t s = 0; s < sides_.size(); ++s)
-      if (!is_listed_[s] && is_first_of_facet(s)) ++result_.missing;
-    result_.listed = mesh_.facets.size();
-    result_.turned = std::move(straight_.size() < reversed_.size() ? straight_ : reversed_);
+      if (!is_listed_[s] && is_first_of_facet(s) && owns(sides_[s])) ++result_.missing;
+    const std::uint64_t straight = sum_over(ranks_of(mesh_), straight_.size()),
+                        reversed = sum_over(ranks_of(mesh_), reversed_.size());
+    result_.turned = std::move(straight < reversed ? straight_ : reversed_);
     return std::move(result_);
   }
 
  private:
   // A facet between two labels has two sides; the side of the greater label represents the facet.
   bool is_first_of_facet(std::size_t s) const { return sides_[s].across < sides_[s].label; }
+  // A facet belongs to the rank that owns its least vertex; listed facets are on that rank, too.
+  bool owns(const Side& side) const {
+    return owns_vertex(mesh_, *std::min_element(side.vertices.begin(), side.vertices.end()));
+  }
 
   void inspect(std::uint32_t f) {
     auto sorted = mesh_.facets[f];

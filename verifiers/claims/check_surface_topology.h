@@ -14,8 +14,8 @@ struct MeshTopology {
   std::int64_t euler = 0;        ///< V - E + F - C of the cells and all their facets, edges and vertices
 };
 
-/// Returns the topology of each label, by its LabelIndex, and at kAllLabels that of all cells together,
-/// except the background's. Takes about 28 bytes per cell while it runs.
+/// Collective. Returns the topology of each label, by its LabelIndex, and at kAllLabels that of all cells
+/// together, except the background's. Takes about 28 bytes per cell while it runs.
 std::vector<MeshTopology> find_mesh_topology(const Mesh& mesh, const Adjacency& adjacency,
                                              const CellLabelIndices& label_indices,
                                              const BoundaryFindings& boundary, int threads);

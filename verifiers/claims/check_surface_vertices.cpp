@@ -51,16 +51,20 @@ double diagonal_mm(const Image& image) {
   return std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
 }
 
-struct VertexTally {
-  Tally tally;
+struct VertexTally : Tally {
   std::uint64_t num_vertices = 0, num_off_own_labels = 0;
   double furthest_voxels = 0;
 
   void add(const VertexTally& other) {
-    tally.add(other.tally);
+    Tally::add(other);
     num_vertices += other.num_vertices;
     num_off_own_labels += other.num_off_own_labels;
     furthest_voxels = std::max(furthest_voxels, other.furthest_voxels);
+  }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    Tally::transfer(stream);
+    stream(num_vertices, num_off_own_labels, furthest_voxels);
   }
 };
 
@@ -87,12 +91,12 @@ class SurfaceVertices {
     if (labels.empty()) return;
     ++part.num_vertices;
     const Point u = frame_.to_voxels(mesh_.vertices[v]);
-    const std::uint32_t own = search_.label_at(u, part.tally.num_exact);
+    const std::uint32_t own = search_.label_at(u, part.num_exact);
     const auto other = check_change(v, u, own, part);
-    if (judges_reach_) check_reach(v, u, labels, part.tally);
+    if (judges_reach_) check_reach(v, u, labels, part);
     const auto is_met = [&](LabelValue label) {
       const auto is_label = [label](std::uint32_t found) { return static_cast<LabelValue>(found) == label; };
-      return is_label(own) || (other && is_label(other->label)) || find(u, is_label, part.tally);
+      return is_label(own) || (other && is_label(other->label)) || find(u, is_label, part);
     };
     part.num_off_own_labels += std::all_of(labels.begin(), labels.end(), is_met) ? 0 : 1;
   }
@@ -116,8 +120,7 @@ class SurfaceVertices {
 
   // Returns the point of another label than u's, `own`, near u.
   std::optional<LabelSearch::Found> check_change(VertexId v, const Point& u, std::uint32_t own,
-                                                 VertexTally& part) const {
-    Tally& tally = part.tally;
+                                                 VertexTally& tally) const {
     ++tally.num_checked;
     const auto is_other = [own](std::uint32_t label) { return label != own; };
     const auto near = find(u, is_other, tally);
@@ -127,7 +130,7 @@ class SurfaceVertices {
     for (std::size_t i = 0; !other && i < kFurtherVoxels.size(); ++i)
       other = search_.find(u, is_other, kFurtherVoxels[i], tally.num_exact);
     const double distance = other ? other->distance : std::numeric_limits<double>::infinity();
-    part.furthest_voxels = std::max(part.furthest_voxels, distance);
+    tally.furthest_voxels = std::max(tally.furthest_voxels, distance);
     if (holds && !tally.closest.wants(distance)) return near;
     Witness witness = witness_of(v, "the image's label changes at the vertex", distance);
     if (other) witness.points.push_back(frame_.voxels_to_mesh(other->at));
@@ -151,14 +154,13 @@ class SurfaceVertices {
 
   Witness witness_of(VertexId v, const char* statement, double value) const {
     Witness witness{.statement = statement,
-                    .vertices = {v},
+                    .vertices = {global_vertex(mesh_, v)},
                     .points = {mesh_.vertices[v]},
                     .value = value,
                     .severity = value};
     for (const std::uint32_t* side = sides_of_.begin(v); side != sides_of_.end(v); ++side)
-      witness.cells.push_back(sides_[*side].cell);
-    std::sort(witness.cells.begin(), witness.cells.end());
-    witness.cells.erase(std::unique(witness.cells.begin(), witness.cells.end()), witness.cells.end());
+      witness.cells.push_back(global_cell(mesh_, sides_[*side].cell));
+    witness.cells = ascending(std::move(witness.cells));
     return witness;
   }
 
@@ -198,10 +200,12 @@ ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency,
   const Space space = options.space.value_or(mesh.space);
   const int threads = num_threads(options.threads);
   const SurfaceVertices vertices(mesh, adjacency, image, options, space, threads);
-  const VertexTally found =
-      tally_over(mesh.vertices.size(), threads, VertexTally{},
-                 [&](std::size_t v, VertexTally& tally) { vertices.check(static_cast<VertexId>(v), tally); });
-  result = result_of("surface_vertices", found.tally);
+  const VertexTally found = over_ranks(mesh, tally_over({0, mesh.vertices.size()}, threads, VertexTally{},
+                                                        [&](std::size_t v, VertexTally& tally) {
+                                                          if (owns_vertex(mesh, v))
+                                                            vertices.check(static_cast<VertexId>(v), tally);
+                                                        }));
+  result = result_of("surface_vertices", found);
   result.method = "a search for points of another label, decided by filters, then exact rationals";
   result.details() = {{"space", describe(space)},
                       {"bound_voxels", options.vertex_bound_voxels},

@@ -6,14 +6,15 @@
 #include "image/image.h"
 #include "image/size_image.h"
 #include "options.h"
+#include "ranks/part.h"
 #include "schedule.h"
 
 namespace podm::verify {
 
 /// Returns the reason why labels of cells cannot be checked; empty: they can.
 inline const char* lack_of_cell_labels(const Mesh& mesh) {
-  if (mesh.cells.empty()) return "the mesh has no cells";
-  return mesh.cell_labels.size() == mesh.cells.size() ? "" : "the mesh states no cell labels";
+  if (num_cells(mesh) == 0) return "the mesh has no cells";
+  return has_cell_labels(mesh) ? "" : "the mesh states no cell labels";
 }
 
 // All checks except structure may rely on ids in range and finite coordinates: they are not run on other

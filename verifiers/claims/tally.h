@@ -1,4 +1,5 @@
-// Counts of the threads of a check, each over its own range, added up in the order of ranges.
+// Counts of the threads of a check, each over its own range, added up in the order of ranges, and then over
+// ranks.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +11,14 @@
 #include "claim.h"
 #include "claims/worst_witnesses.h"
 #include "parallel.h"
+#include "ranks/part.h"
 
 namespace podm::verify {
 
 /// A histogram that is being filled.
 class Bins {
  public:
+  Bins() = default;
   Bins(std::string name, std::string unit, double low, double high, std::size_t num_bins) {
     histogram_.name = std::move(name);
     histogram_.unit = std::move(unit);
@@ -39,6 +42,10 @@ class Bins {
       histogram_.counts[b] += other.histogram_.counts[b];
   }
   const Histogram& histogram() const { return histogram_; }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(histogram_);
+  }
 
  private:
   Histogram histogram_;
@@ -50,7 +57,7 @@ inline Bins bins_of_degrees(std::string name) { return {std::move(name), "degree
 struct Tally {
   std::uint64_t num_checked = 0, num_exact = 0, num_violations = 0, num_ties = 0;
   WorstWitnesses worst, closest;  // of violations; of all if the check adds them, reported on a pass
-  std::vector<CellId> bad_cells;
+  std::vector<GlobalId> bad_cells;
   std::vector<Bins> bins;
 
   void violation(Witness witness) {
@@ -68,30 +75,51 @@ struct Tally {
     bad_cells.insert(bad_cells.end(), other.bad_cells.begin(), other.bad_cells.end());
     for (std::size_t b = 0; b < bins.size(); ++b) bins[b].add(other.bins[b]);
   }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(num_checked, num_exact, num_violations, num_ties, worst, closest, bins);
+  }
 };
 
-/// Calls body(i, tally) for every i in [0, count), on several threads. Each thread begins with a copy of
+/// Calls body(i, tally) for every i in the range, on several threads. Each thread begins with a copy of
 /// `empty`.
-template <class Part = Tally, class Body>
-Part tally_over(std::size_t count, int threads, const Part& empty, const Body& body) {
-  return sum_over_ranges(count, threads, empty, [&](std::size_t begin, std::size_t end, Part& part) {
-    for (std::size_t i = begin; i < end; ++i) body(i, part);
+template <class Sum = Tally, class Body>
+Sum tally_over(const IdRange& range, int threads, const Sum& empty, const Body& body) {
+  const std::size_t first = range.begin;
+  return sum_over_ranges(range.size(), threads, empty, [&](std::size_t begin, std::size_t end, Sum& part) {
+    for (std::size_t i = first + begin; i < first + end; ++i) body(i, part);
   });
+}
+
+/// Collective. Returns the sum of the ranks' tallies by their add(), the same on all ranks except
+/// `bad_cells`, of which each rank gets its own.
+template <class Sum>
+Sum over_ranks(const Mesh& mesh, Sum own) {
+  std::vector<GlobalId> bad_cells = std::move(own.bad_cells);
+  own.bad_cells.clear();
+  Communication& ranks = ranks_of(mesh);
+  if (ranks.size() > 1) {
+    std::vector<Sum> parts = gather(ranks, own);
+    for (std::size_t r = 1; r < parts.size(); ++r) parts[0].add(parts[r]);
+    own = std::move(parts[0]);
+  }
+  own.bad_cells = own_of(mesh, std::move(bad_cells));
+  return own;
 }
 
 inline Witness cell_witness(const Mesh& mesh, CellId c, std::string statement, double value,
                             double severity) {
   Witness witness{.statement = std::move(statement),
-                  .cells = {c},
-                  .vertices = {mesh.cells[c].begin(), mesh.cells[c].end()},
+                  .cells = {global_cell(mesh, c)},
+                  .vertices = global_vertices(mesh, mesh.cells[c]),
                   .value = value,
                   .severity = severity,
                   .label = mesh.cell_labels.empty() ? 0 : mesh.cell_labels[c]};
-  for (const VertexId v : witness.vertices) witness.points.push_back(mesh.vertices[v]);
+  for (const VertexId v : mesh.cells[c]) witness.points.push_back(mesh.vertices[v]);
   return witness;
 }
 
-/// Returns a claim's result without method, reason and details.
+/// Returns the result of a claim from its tally over_ranks(), without method, reason and details.
 inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   ClaimResult result;
   result.claim = claim;
@@ -100,10 +128,7 @@ inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   result.num_exact = tally.num_exact;
   result.num_violations = tally.num_violations;
   result.worst = (tally.num_violations == 0 ? tally.closest : tally.worst).worst_first();
-  result.bad_cells = tally.bad_cells;
-  std::sort(result.bad_cells.begin(), result.bad_cells.end());
-  result.bad_cells.erase(std::unique(result.bad_cells.begin(), result.bad_cells.end()),
-                         result.bad_cells.end());
+  result.bad_cells = ascending(tally.bad_cells);  // of several tallies
   for (const Bins& bins : tally.bins) result.histograms.push_back(bins.histogram());
   return result;
 }

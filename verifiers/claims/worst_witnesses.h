@@ -1,4 +1,4 @@
-// Keeps the worst few of many witnesses; among equals the first cells.
+// Keeps the worst few of many witnesses; among equals the first cells, vertices and points.
 #pragma once
 
 #include <algorithm>
@@ -25,11 +25,15 @@ class WorstWitnesses {
     for (const Witness& witness : other.kept_) add(witness);
   }
   const std::vector<Witness>& worst_first() const { return kept_; }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(kept_);
+  }
 
  private:
   static bool is_before(const Witness& a, const Witness& b) {
     if (a.severity != b.severity) return a.severity > b.severity;
-    return std::tie(a.cells, a.vertices) < std::tie(b.cells, b.vertices);
+    return std::tie(a.cells, a.vertices, a.points) < std::tie(b.cells, b.vertices, b.points);
   }
   std::vector<Witness> kept_;
 };

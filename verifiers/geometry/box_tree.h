@@ -1,8 +1,10 @@
 // A tree over axis-aligned boxes, split at medians, that finds the boxes that may meet a region.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mesh.h"
@@ -20,6 +22,19 @@ Bounds bounds_of(const Points& points) {
       if (p[a] < box.low[a]) box.low[a] = p[a];
       if (p[a] > box.high[a]) box.high[a] = p[a];
     }
+  }
+  return box;
+}
+inline constexpr double kBeyondAll = std::numeric_limits<double>::infinity();
+/// Contains nothing and meets nothing.
+inline constexpr Bounds kEmptyBounds{{kBeyondAll, kBeyondAll, kBeyondAll},
+                                     {-kBeyondAll, -kBeyondAll, -kBeyondAll}};
+/// Returns the box of both boxes.
+inline Bounds joined(const Bounds& a, const Bounds& b) {
+  Bounds box = a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::min(a.low[axis], b.low[axis]);
+    box.high[axis] = std::max(a.high[axis], b.high[axis]);
   }
   return box;
 }

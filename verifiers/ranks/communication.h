@@ -75,7 +75,15 @@ std::vector<Item> exchange_joined(Communication& ranks, std::vector<std::vector<
   return all;
 }
 
+/// Return the sum over all ranks: of a value, and of each value of vectors of one size.
 std::uint64_t sum_over(Communication& ranks, std::uint64_t value);
+template <class Value>
+std::vector<Value> sum_over(Communication& ranks, const std::vector<Value>& values) {
+  std::vector<Value> sums(values.size());
+  for (const std::vector<Value>& part : gather(ranks, values))
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part[i];
+  return sums;
+}
 
 /// Calls action(), which must not be collective. Throws RefusedByAll on all ranks if action() threw
 /// InputError on any; the text is that of the first such rank.

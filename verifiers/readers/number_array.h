@@ -123,7 +123,12 @@ struct NamedArray {
   NumberArray values;
 };
 
-/// Returns the id as Mesh stores it: kNone for a number that cannot be a vertex of any mesh.
+inline constexpr GlobalId kNoId = std::numeric_limits<GlobalId>::max();  ///< no vertex of any mesh
+/// Returns the id, kNoId for a number that cannot be one.
+inline GlobalId global_id(std::optional<std::int64_t> id) {
+  return id && *id >= 0 ? static_cast<GlobalId>(*id) : kNoId;
+}
+/// Returns the id as Mesh stores it: kNone for a number that cannot be a vertex of a mesh in memory.
 inline VertexId vertex_id(std::optional<std::int64_t> id) {
   return id && *id >= 0 && *id < std::int64_t{kNone} ? static_cast<VertexId>(*id) : kNone;
 }

@@ -209,7 +209,7 @@ class LegacyVtkReader {
 
   void keep_ids(const NumberArray& ids) {
     grid_.point_ids.clear();
-    for (std::size_t i = 0; i < ids.size(); ++i) grid_.point_ids.push_back(vertex_id(ids.integer(i)));
+    for (std::size_t i = 0; i < ids.size(); ++i) grid_.point_ids.push_back(global_id(ids.integer(i)));
   }
 
   // Any count is accepted that the rest of the file could hold at one byte each; reading the numbers checks
@@ -318,7 +318,7 @@ Mesh read_legacy_vtk(const MeshFile& file) { return LegacyVtkReader(file, nullpt
 void read_legacy_vtk_facets(const MeshFile& file, Mesh& mesh) {
   const VtuGrid surface = LegacyVtkReader(file, "vertex").read();
   check_points(file, surface, mesh);
-  append_facets(file, surface, surface.point_ids, mesh);
+  append_facets(file, surface, vertex_ids(surface), mesh);
 }
 
 }  // namespace podm::verify

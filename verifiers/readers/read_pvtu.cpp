@@ -9,45 +9,12 @@
 #include "errors.h"
 #include "readers/formats.h"
 #include "readers/mesh_parts.h"
-#include "readers/pvtu_index.h"
+#include "readers/pvtu_pieces.h"
 #include "readers/vtu_document.h"
 #include "readers/vtu_grid.h"
 
 namespace podm::verify {
 namespace {
-
-// Calls read(file) for each piece. An error names the index, too.
-template <class Read>
-void for_each_piece(const MeshFile& index, const std::vector<PieceSource>& pieces, Read read) {
-  for (const PieceSource& piece : pieces) {
-    try {
-      read(MeshFile(piece.path));
-    } catch (const InputError& error) {
-      index.refuse(piece.place(), error.what());
-    }
-  }
-}
-
-std::string text_of(const Point& point) { return fmt::format("({}, {}, {})", point[0], point[1], point[2]); }
-
-// Throws unless two pieces of one mesh name the same labels and the same space.
-void check_labels_and_space(const MeshFile& file, const Mesh& piece, const Mesh& first) {
-  if (piece.space != first.space) file.refuse("FieldData", "the space is not that of the first piece");
-  if (piece.smoothing_mm != first.smoothing_mm)
-    file.refuse("FieldData", "the width of smoothing is not that of the first piece");
-  for (const auto* names : {&piece.label_names, &first.label_names}) {
-    for (const auto& [value, name] : *names) {
-      const auto here = piece.label_names.find(value), there = first.label_names.find(value);
-      const auto name_in = [&](const auto& found, const Mesh& mesh) {
-        return found == mesh.label_names.end() ? std::string("not named")
-                                               : fmt::format("'{}'", found->second);
-      };
-      if (name_in(here, piece) == name_in(there, first)) continue;
-      file.refuse("FieldData", fmt::format("label {} is {}, in the first piece {}", value,
-                                           name_in(here, piece), name_in(there, first)));
-    }
-  }
-}
 
 class PieceMerger {
  public:
@@ -58,18 +25,14 @@ class PieceMerger {
   void add(const MeshFile& file) {
     const VtuGrid grid = read_vtu_grid(file, kGlobalIds);
     if (num_added_ == 0) {
-      whole_.format = fmt::format("PVTU of {} pieces: {}", pieces_.size(), grid.mesh.format);
-      whole_.space = grid.mesh.space;
-      whole_.label_names = grid.mesh.label_names;
-      whole_.label_colours = grid.mesh.label_colours;
-      whole_.unclaimed = grid.mesh.unclaimed;
-      whole_.promised_dihedral_deg = grid.mesh.promised_dihedral_deg;
-      whole_.smoothing_mm = grid.mesh.smoothing_mm;
+      take_head(grid.mesh, whole_);
+      whole_.format = format_of_pieces(pieces_.size(), grid.mesh.format);
     }
     check_labels_and_space(file, grid.mesh, whole_);
     for (std::size_t i = 0; i < grid.point_ids.size(); ++i) add_point(file, grid, i);
-    append_cells(file, grid, grid.point_ids, whole_);
-    append_facets(file, grid, grid.point_ids, whole_);
+    const std::vector<VertexId> vertex_of = vertex_ids(grid);
+    append_cells(file, grid, vertex_of, whole_);
+    append_facets(file, grid, vertex_of, whole_);
     for (const auto& [kind, count] : grid.mesh.other_cells) whole_.other_cells[kind] += count;
     ++num_added_;
   }
@@ -88,7 +51,7 @@ class PieceMerger {
 
  private:
   void add_point(const MeshFile& file, const VtuGrid& grid, std::size_t i) {
-    const VertexId id = grid.point_ids[i];
+    const GlobalId id = grid.point_ids[i];
     const auto refuse = [&](const std::string& fault) {
       file.refuse(grid.ids_place, fmt::format("point {}: {}", i, fault));
     };
@@ -138,7 +101,7 @@ void read_pvtu_facets(const MeshFile& index, Mesh& mesh) {
     const VtuGrid grid = read_vtu_grid(file, kGlobalIds);
     check_labels_and_space(file, grid.mesh, mesh);
     check_points(file, grid, mesh);
-    append_facets(file, grid, grid.point_ids, mesh);
+    append_facets(file, grid, vertex_ids(grid), mesh);
   });
 }
 

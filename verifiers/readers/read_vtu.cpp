@@ -93,7 +93,7 @@ void read_point_ids(const MeshFile& file, VtuDocument& document, const char* nam
     const VtuArray& array = need_array(file, piece, piece.point_data, name);
     const NumberArray ids = load_vtu_array(file, document, array, piece.num_points);
     make_room(grid.point_ids, ids.size());
-    for (std::size_t i = 0; i < ids.size(); ++i) grid.point_ids.push_back(vertex_id(ids.integer(i)));
+    for (std::size_t i = 0; i < ids.size(); ++i) grid.point_ids.push_back(global_id(ids.integer(i)));
     grid.ids_place = array.place();
   }
 }
@@ -138,6 +138,14 @@ std::uint64_t count_vtu_points(const MeshFile& file) {
   return count;
 }
 
+std::vector<VertexId> vertex_ids(const VtuGrid& grid) {
+  std::vector<VertexId> ids;
+  ids.reserve(grid.point_ids.size());
+  for (const GlobalId id : grid.point_ids)
+    ids.push_back(static_cast<VertexId>(std::min<GlobalId>(id, kNone)));
+  return ids;
+}
+
 bool is_same_point(const Point& a, const Point& b) {
   using Bits = std::array<std::uint64_t, 3>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
@@ -145,7 +153,7 @@ bool is_same_point(const Point& a, const Point& b) {
 
 void check_points(const MeshFile& file, const VtuGrid& grid, const Mesh& mesh) {
   for (std::size_t i = 0; i < grid.point_ids.size(); ++i) {
-    const VertexId vertex = grid.point_ids[i];
+    const GlobalId vertex = grid.point_ids[i];
     if (vertex < mesh.vertices.size() && is_same_point(mesh.vertices[vertex], grid.mesh.vertices[i]))
       continue;
     file.refuse(
@@ -181,7 +189,7 @@ Mesh read_vtu(const MeshFile& file) { return read_vtu_grid(file, nullptr).mesh; 
 void read_vtu_facets(const MeshFile& file, Mesh& mesh) {
   VtuGrid surface = read_vtu_grid(file, "vertex");
   check_points(file, surface, mesh);
-  append_facets(file, surface, surface.point_ids, mesh);
+  append_facets(file, surface, vertex_ids(surface), mesh);
 }
 
 }  // namespace podm::verify

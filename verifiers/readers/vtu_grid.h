@@ -12,9 +12,12 @@ namespace podm::verify {
 
 struct VtuGrid {
   Mesh mesh;                        ///< with ids of the file's own points
-  std::vector<VertexId> point_ids;  ///< one per point, from the array asked for; kNone for other values
+  std::vector<GlobalId> point_ids;  ///< one per point, from the array asked for; kNoId for other values
   std::string ids_place;            ///< "line 12, DataArray 'vertex'"
 };
+
+/// Returns the ids of the points as vertices of a mesh in memory; kNone for greater ids.
+std::vector<VertexId> vertex_ids(const VtuGrid& grid);
 
 /// `id_array` names the point array that `point_ids` come from; null: none. Throws InputError.
 VtuGrid read_vtu_grid(const MeshFile& file, const char* id_array);

@@ -8,6 +8,7 @@
 
 #include "errors.h"
 #include "image/image_frame.h"
+#include "ranks/part.h"
 #include "report/reports.h"
 
 namespace podm::verify {
@@ -127,23 +128,23 @@ Json options_of(const Options& options) {
           {"threads", options.threads}};
 }
 
+}  // namespace
+
 std::uint64_t peak_resident_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-}  // namespace
-
 std::string json_report(const Inputs& inputs, const Options& options, const std::vector<ClaimResult>& results,
-                        double seconds) {
+                        double seconds, std::uint64_t peak_bytes) {
   const Mesh& mesh = inputs.mesh;
   Json claims = Json::object();
   for (const ClaimResult& result : results) claims[result.claim] = claim_of(result);
   Json mesh_json = file_of(mesh.path);
   mesh_json["format"] = mesh.format;
-  mesh_json["cells"] = mesh.cells.size();
-  mesh_json["vertices"] = mesh.vertices.size();
+  mesh_json["cells"] = num_cells(mesh);
+  mesh_json["vertices"] = num_vertices(mesh);
   mesh_json["space"] = describe(mesh.space);
   mesh_json["cell_label_array"] = mesh.cell_label_array;
   mesh_json["other_cells"] = mesh.other_cells;
@@ -159,8 +160,9 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
                     {"size_image", size_image_of(inputs, options)},
                     {"options", options_of(options)},
                     {"claims", claims},
+                    {"ranks", ranks_of(mesh).size()},
                     {"seconds", seconds},
-                    {"peak_rss_bytes", peak_resident_bytes()}};
+                    {"peak_rss_bytes", peak_bytes}};
   return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "ranks/part.h"
 #include "report/reports.h"
 
 namespace podm::verify {
@@ -42,7 +43,7 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
                             const std::vector<ClaimResult>& results, double seconds) {
   const Mesh& mesh = inputs.mesh;
   std::string text = fmt::format("{}: {}; {} tetrahedra, {} vertices\n", mesh.path, mesh.format,
-                                 mesh.cells.size(), mesh.vertices.size());
+                                 num_cells(mesh), num_vertices(mesh));
   for (const auto& [name, count] : mesh.other_cells)
     text += fmt::format("  also holds {} {}, not checked\n", count, name);
   if (inputs.image && inputs.image->smoothing)

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
+#include "ranks/part.h"
 #include "report/reports.h"
 #include "report/whole_file.h"
 
@@ -56,40 +58,50 @@ void write_text(const std::string& path, const std::string& text) {
   if (!file) refuse_to_write(path, errno);
 }
 
-void write_bad_cells(const std::string& path, const Mesh& mesh, const std::vector<ClaimResult>& results) {
-  std::vector<std::uint32_t> cells;
-  for (const ClaimResult& result : results)
-    if (result.verdict == Verdict::kFail)
-      cells.insert(cells.end(), result.bad_cells.begin(), result.bad_cells.end());
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::erase_if(cells, [&](CellId c) {  // cells without all their vertices cannot be drawn
+std::vector<BadCell> find_bad_cells(const Mesh& mesh, const std::vector<ClaimResult>& results) {
+  std::map<GlobalId, std::uint64_t> claims_of;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (results[i].verdict == Verdict::kFail)
+      for (const GlobalId cell : results[i].bad_cells) claims_of[cell] |= std::uint64_t{1} << i;
+  const IdRange own = own_cells(mesh);
+  const GlobalId first = own.size() == 0 ? 0 : global_cell(mesh, static_cast<CellId>(own.begin));
+  auto lists = lists_for<BadCell>(ranks_of(mesh));
+  for (const auto& [id, claims] : claims_of) {
+    const auto c = static_cast<CellId>(id - first + own.begin);
     const auto& v = mesh.cells[c];
-    return std::any_of(v.begin(), v.end(), [&](VertexId id) { return id >= mesh.vertices.size(); });
-  });
+    if (std::any_of(v.begin(), v.end(), [&](VertexId x) { return x >= mesh.vertices.size(); })) continue;
+    BadCell bad{id, {}, mesh.cell_labels.empty() ? 0 : mesh.cell_labels[c], claims};
+    for (std::size_t i = 0; i < 4; ++i) bad.points[i] = mesh.vertices[v[i]];
+    lists[0].push_back(bad);
+  }
+  return exchange_joined(ranks_of(mesh), std::move(lists));
+}
 
+void write_bad_cells(const std::string& path, const std::vector<BadCell>& cells,
+                     const std::vector<ClaimResult>& results) {
   std::vector<Point> points;
+  std::vector<GlobalId> ids;
   std::vector<std::int64_t> connectivity, offsets, labels;
-  for (const CellId c : cells) {
-    for (const VertexId v : mesh.cells[c]) {
+  for (const BadCell& cell : cells) {
+    for (const Point& point : cell.points) {
       connectivity.push_back(static_cast<std::int64_t>(points.size()));
-      points.push_back(mesh.vertices[v]);
+      points.push_back(point);
     }
     offsets.push_back(static_cast<std::int64_t>(points.size()));
-    labels.push_back(mesh.cell_labels.empty() ? 0 : mesh.cell_labels[c]);
+    ids.push_back(cell.id);
+    labels.push_back(cell.label);
   }
   std::vector<VtuArray> arrays{vtu_array("Float64", "Points", 3, points),
                                vtu_array("Int64", "connectivity", 1, connectivity),
                                vtu_array("Int64", "offsets", 1, offsets),
                                vtu_array("UInt8", "types", 1, std::vector<std::uint8_t>(cells.size(), 10)),
-                               vtu_array("UInt32", "cell", 1, cells),
+                               vtu_array("UInt64", "cell", 1, ids),
                                vtu_array("Int64", "label", 1, labels)};
-  for (const ClaimResult& result : results) {
-    if (result.verdict != Verdict::kFail) continue;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].verdict != Verdict::kFail) continue;
     std::vector<std::uint8_t> is_bad;
-    for (const CellId c : cells)
-      is_bad.push_back(std::binary_search(result.bad_cells.begin(), result.bad_cells.end(), c));
-    arrays.push_back(vtu_array("UInt8", result.claim, 1, is_bad));
+    for (const BadCell& cell : cells) is_bad.push_back(cell.claims >> i & 1);
+    arrays.push_back(vtu_array("UInt8", results[i].claim, 1, is_bad));
   }
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "

@@ -1,16 +1,20 @@
 """Tests the verifier: the claim that a mutant attacks must reject it, and must accept its harmless neighbour.
 
-Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix. Exits with 1 if it has a hole: a mutant ALIVE, a mutant that
-offends against a claim it must pass (IMPURE), or a neighbour REJECTED.
+Usage: kill_matrix.py PODM PODM_VERIFY [RANKS]. Prints the matrix. Exits with 1 if it has a hole: a mutant ALIVE, a
+mutant that offends against a claim it must pass (IMPURE), or a neighbour REJECTED. With RANKS, PODM_VERIFY is
+podm-verify-mpi: it judges the meshes in pieces on RANKS ranks. A mesh that cannot be in pieces is left out.
 """
 
+import dataclasses
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-from mutants import MutantFixture
+from medit_mesh import MeditMesh
+from mutants import Mutant, MutantFixture
+from pvtu_mesh import MeshInPieces
 from tolerance_mutants import OPERATORS
 
 
@@ -31,12 +35,32 @@ def run(verifier, case, claim, folder):
     return process.returncode, result["verdict"], result["num_warnings"]
 
 
+def in_pieces(case, num_pieces):
+    """Returns the case with its mesh in pieces; None if it cannot be."""
+    if isinstance(case.mesh, MeshInPieces):
+        return case
+    if not isinstance(case.mesh, MeditMesh) or case.digits != 17:
+        return None
+    return dataclasses.replace(case, mesh=MeshInPieces(case.mesh, num_pieces))
+
+
+def pair_on_ranks(pair, num_ranks):
+    """Returns a mutant and its neighbour in more pieces than ranks; None if that is not possible."""
+    cases = [in_pieces(case, num_ranks + 1) for case in (pair.mutant, pair.neighbour)]
+    if None in cases:
+        return None
+    for case in cases:
+        case.options = [*case.options, "--in-process", str(num_ranks)]
+    return Mutant(*cases, pair.still_passes)
+
+
 def word(is_killed, is_pure):
     return "ALIVE" if not is_killed else "killed" if is_pure else "IMPURE"
 
 
 def main():
-    podm, verifier = sys.argv[1:]
+    podm, verifier = sys.argv[1:3]
+    num_ranks = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     holes = 0
     print(f"{'operator':<35} {'claim':<16} {'mutant':<10} neighbour")
     with tempfile.TemporaryDirectory() as name:
@@ -44,6 +68,11 @@ def main():
         fixture = MutantFixture(podm, folder)
         for function, claim, exit_code in OPERATORS:
             pair = function(fixture)
+            if num_ranks > 0:
+                pair = pair_on_ranks(pair, num_ranks)
+            if pair is None:
+                print(f"{function.__name__:<35} not of a mesh in pieces")
+                continue
             code, verdict, _ = run(verifier, pair.mutant, claim, folder)
             is_killed = code == exit_code and verdict == ("fail" if claim else None)
             is_pure = all(run(verifier, pair.mutant, other, folder)[:2] == (0, "pass") for other in pair.still_passes)

@@ -4,20 +4,25 @@ import copy
 
 import numpy as np
 
+PROMISE = "# promise "
 HEAD = '<?xml version="1.0"?>\n<VTKFile type="{}" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
 
 
 class Piece:
-    """points (n,3), their global ids (n,), cells (m,5) and facets (k,5) of the piece's points, then labels."""
+    """points (n,3), their global ids (n,), cells (m,5) and facets (k,3 or 5) of the piece's points, then labels."""
 
-    def __init__(self, mesh, cells, facets):
-        used = np.unique(np.concatenate([cells[:, :4].ravel(), facets[:, :3].ravel()])).astype(np.int64)
+    def __init__(self, mesh, cells, facets, others=()):
+        """The piece also has the vertices `others`. An id that names no vertex names no point of the piece."""
+        used = np.unique(np.concatenate([cells[:, :4].ravel(), facets[:, :3].ravel(), others])).astype(np.int64)
+        used = used[(used >= 0) & (used < len(mesh.vertices))]
         self.ids = used
         self.points = mesh.vertices[used]
         self.cells, self.facets = cells.copy(), facets.copy()
-        self.cells[:, :4] = np.searchsorted(used, cells[:, :4])
-        self.facets[:, :3] = np.searchsorted(used, facets[:, :3])
-        self.field = {"space:RAS": 1}
+        for rows, corners in (self.cells, 4), (self.facets, 3):
+            places = np.searchsorted(used, rows[:, :corners])
+            rows[:, :corners] = np.where(np.isin(rows[:, :corners], used), places, len(used) + 7)
+        self.field = {"space:RAS": 1, **{f"promise:{line[len(PROMISE):].strip()}": 1 for line in mesh.comments
+                                         if line.startswith(PROMISE)}}
 
     def vtu(self, rows, corners, vtk_type, labels, ids="GlobalNodeIds"):
         """Returns VTU text of all points and the cells in `rows`; columns after the corners are named cell arrays."""
@@ -44,16 +49,23 @@ class MeshInPieces:
     extension = ".pvtu"
 
     def __init__(self, mesh, num_pieces):
-        """Distributes cells by the x of their first vertex; a facet goes with a cell that it is a side of."""
+        """Distributes cells by the x of their first vertex; a facet goes with a cell that it is a side of. The last
+        piece has the vertices that no cell uses. Facets have labels if the mesh states pairs.
+        """
         pairs = label_pairs(mesh)
-        order = np.argsort(mesh.vertices[mesh.cells[:, 0], 0], kind="stable")
+        order = np.argsort(mesh.vertices[np.clip(mesh.cells[:, 0], 0, len(mesh.vertices) - 1), 0], kind="stable") \
+            if len(mesh.cells) > 0 else np.array([], dtype=np.int64)
         piece_of_cell = np.empty(len(order), dtype=np.int64)
         piece_of_cell[order] = np.arange(len(order)) * num_pieces // max(len(order), 1)
         piece_of_side = {tuple(sorted(np.delete(cell, k))): piece_of_cell[c]
                          for c, cell in enumerate(mesh.cells[:, :4]) for k in range(4)}
-        piece_of_facet = np.array([piece_of_side[tuple(sorted(facet[:3]))] for facet in mesh.facets], dtype=np.int64)
-        facets = np.array([[*facet[:3], *pairs[facet[3]]] for facet in mesh.facets], dtype=np.int64).reshape(-1, 5)
-        self.pieces = [Piece(mesh, mesh.cells[piece_of_cell == p], facets[piece_of_facet == p])
+        piece_of_facet = np.array([piece_of_side.get(tuple(sorted(facet[:3])), 0) for facet in mesh.facets],
+                                  dtype=np.int64)
+        facets = (np.array([[*facet[:3], *pairs[facet[3]]] for facet in mesh.facets], dtype=np.int64).reshape(-1, 5)
+                  if pairs else mesh.facets[:, :3])
+        unused = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.cells[:, :4])
+        self.pieces = [Piece(mesh, mesh.cells[piece_of_cell == p], facets[piece_of_facet == p],
+                             unused if p == num_pieces - 1 else ())
                        for p in range(num_pieces)]
         self.index = list(range(num_pieces))  # the pieces that the index names
 
@@ -66,7 +78,8 @@ class MeshInPieces:
 
     def write(self, path, _digits=17):
         kinds = (("", lambda piece: piece.vtu(piece.cells, 4, 10, ["label"])),
-                 ("_facets", lambda piece: piece.vtu(piece.facets, 3, 5, ["label_a", "label_b"])))
+                 ("_facets", lambda piece: piece.vtu(piece.facets, 3, 5,
+                                                     ["label_a", "label_b"][:piece.facets.shape[1] - 3])))
         for ending, text in kinds:
             for p, piece in enumerate(self.pieces):
                 path.with_name(f"{path.stem}_{p}{ending}.vtu").write_text(text(piece))

@@ -36,6 +36,8 @@ def cubes_of_two_labels():
 
 
 class PiecesTest(unittest.TestCase):
+    PREFIX = "podm-verify: "
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -57,7 +59,7 @@ class PiecesTest(unittest.TestCase):
         """Expects a refusal that begins with the index and contains all words."""
         process = self.verify(self.index)
         self.assertEqual(process.returncode, 2, process.stdout + process.stderr)
-        self.assertIn(f"podm-verify: {self.index.with_suffix('')}", process.stderr)
+        self.assertIn(f"{self.PREFIX}{self.index.with_suffix('')}", process.stderr)
         for word in words:
             self.assertIn(word, process.stderr)
 

@@ -91,7 +91,7 @@ TEST(BoundaryAngles, NamesTheSmallestFirst) {
   for (const double bound : {1.0, 44.0}) {
     const ClaimResult result = angles_of(mesh, bound);
     ASSERT_FALSE(result.worst.empty());
-    EXPECT_EQ(result.worst[0].cells, std::vector<CellId>{1});
+    EXPECT_EQ(result.worst[0].cells, std::vector<GlobalId>{1});
     EXPECT_NEAR(result.worst[0].value, std::atan(1. / 3) * 180 / std::numbers::pi, 1e-9);
   }
 }

@@ -92,10 +92,10 @@ TEST(Dihedral, NamesTheWorstAndOnAPassTheClosest) {
   for (const double least : {4.0, 8.0}) {
     const ClaimResult result = dihedral_of(mesh, least, std::nullopt);
     ASSERT_FALSE(result.worst.empty());
-    EXPECT_EQ(result.worst[0].cells, std::vector<CellId>{1});
+    EXPECT_EQ(result.worst[0].cells, std::vector<GlobalId>{1});
     EXPECT_NEAR(result.worst[0].value, 5, 1e-9);
   }
-  EXPECT_EQ(dihedral_of(mesh, 8, 165).bad_cells, (std::vector<CellId>{1, 2}));
+  EXPECT_EQ(dihedral_of(mesh, 8, 165).bad_cells, (std::vector<GlobalId>{1, 2}));
 }
 
 }  // namespace

@@ -92,9 +92,9 @@ TEST(Labels, OneCellOfAnotherLabelFailsAndIsTheWitness) {
   mesh.cell_labels[100] = 3 - mesh.cell_labels[100];
   const ClaimResult result = labels_of(mesh, image);
   EXPECT_EQ(result.num_violations, 1U);
-  EXPECT_EQ(result.bad_cells, std::vector<CellId>{100});
+  EXPECT_EQ(result.bad_cells, std::vector<GlobalId>{100});
   ASSERT_FALSE(result.worst.empty());
-  EXPECT_EQ(result.worst[0].cells, std::vector<CellId>{100});
+  EXPECT_EQ(result.worst[0].cells, std::vector<GlobalId>{100});
 }
 
 TEST(Labels, AMirroredAxisFails) {
@@ -149,8 +149,7 @@ TEST(Labels, AFlatCellHasNoCircumcentreAndFails) {
   const auto n = static_cast<VertexId>(mesh.vertices.size());
   mesh.cells.push_back({mesh.cells[0][0], n - 1, n - 2, mesh.cells[0][1]});
   mesh.cell_labels.push_back(1);
-  EXPECT_EQ(labels_of(mesh, image).bad_cells,
-            std::vector<CellId>{static_cast<CellId>(mesh.cells.size() - 1)});
+  EXPECT_EQ(labels_of(mesh, image).bad_cells, std::vector<GlobalId>{mesh.cells.size() - 1});
 }
 
 TEST(Labels, ThreadsDoNotMatter) {

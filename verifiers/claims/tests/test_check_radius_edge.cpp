@@ -70,12 +70,12 @@ TEST(RadiusEdge, NamesTheWorstAndOnAPassTheClosest) {
   EXPECT_EQ(result.verdict, Verdict::kPass);
   EXPECT_TRUE(result.bad_cells.empty());
   ASSERT_EQ(result.worst.size(), 2);
-  EXPECT_EQ(result.worst[0].cells, std::vector<CellId>{1});
+  EXPECT_EQ(result.worst[0].cells, std::vector<GlobalId>{1});
   EXPECT_NEAR(result.worst[0].value, 1.5, 1e-12);
   mesh = joined(mesh, corner(1, 9, 9));
   result = radius_edge_of(mesh, 1.93);
   ASSERT_EQ(result.worst.size(), 1);
-  EXPECT_EQ(result.bad_cells, std::vector<CellId>{2});
+  EXPECT_EQ(result.bad_cells, std::vector<GlobalId>{2});
 }
 
 TEST(RadiusEdge, HistogramsHoldEveryCellAndDihedralAngle) {

@@ -34,9 +34,9 @@ TEST(Size, HoldsEachLabelToItsOwnBound) {
   Mesh mesh = joined(corner(1, 2, 2), corner(2, 4, 4));  // circumradii 3/2 and 3
   mesh.cell_labels = {1, 2};
   EXPECT_EQ(size_of(mesh, std::nullopt, {{1, 1.5}, {2, 3}}).verdict, Verdict::kPass);
-  EXPECT_EQ(size_of(mesh, std::nullopt, {{1, 3}, {2, 1.5}}).bad_cells, std::vector<CellId>{1});
+  EXPECT_EQ(size_of(mesh, std::nullopt, {{1, 3}, {2, 1.5}}).bad_cells, std::vector<GlobalId>{1});
   EXPECT_EQ(size_of(mesh, 1.5, {{2, 3}}).verdict, Verdict::kPass);
-  EXPECT_EQ(size_of(mesh, 1.5, {{1, 3}}).bad_cells, std::vector<CellId>{1});
+  EXPECT_EQ(size_of(mesh, 1.5, {{1, 3}}).bad_cells, std::vector<GlobalId>{1});
   const ClaimResult one_label = size_of(mesh, std::nullopt, {{1, 1.5}});
   EXPECT_EQ(one_label.verdict, Verdict::kPass);
   EXPECT_EQ(one_label.num_checked, 1) << "label 2 has no bound";
@@ -84,7 +84,7 @@ TEST(Size, ReachesHalfAVoxelBeyondTheCenters) {
   EXPECT_THROW(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2.0000001})), InputError);
   // Only one of two cells has a bound.
   EXPECT_EQ(size_by(one, joined(corner(2, 2, 2), shifted(corner(2, 2, 2), {9, 0, 0}))).bad_cells,
-            std::vector<CellId>{0});
+            std::vector<GlobalId>{0});
 }
 
 TEST(Size, DecidesTiesExactly) {
@@ -130,7 +130,7 @@ TEST(Size, NamesTheWorstAndOnAPassTheClosest) {
   for (const double bound : {2.0, 10.0}) {
     const ClaimResult result = size_of(mesh, bound);
     ASSERT_FALSE(result.worst.empty());
-    EXPECT_EQ(result.worst[0].cells, std::vector<CellId>{1});
+    EXPECT_EQ(result.worst[0].cells, std::vector<GlobalId>{1});
     EXPECT_NEAR(result.worst[0].severity, 3 / bound, 1e-12);
   }
 }

@@ -93,10 +93,11 @@ T squared_distance(const Image& image, const InterfaceSize& near, const Vector<T
   return *least;
 }
 
-std::vector<CellId> over_near_by_definition(const Mesh& mesh, const Image& image, const InterfaceSize& near) {
+std::vector<GlobalId> over_near_by_definition(const Mesh& mesh, const Image& image,
+                                              const InterfaceSize& near) {
   const VoxelMap to_voxels(image.voxel_to_ras, mesh.space);
   const Rational radius(near.radius_mm), width(near.width_mm);
-  std::vector<CellId> over;
+  std::vector<GlobalId> over;
   for (CellId c = 0; c < mesh.cells.size(); ++c) {
     const CellPoints p = points_of(mesh, c);
     const auto center = circumcenter<Rational>(p);

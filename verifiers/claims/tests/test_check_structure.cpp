@@ -34,7 +34,7 @@ TEST(Structure, RejectsIdsOutOfRange) {
     mesh.cells[1][3] = id;
     const ClaimResult result = check_structure(mesh, {}, two_threads());
     EXPECT_TRUE(names(result, "vertex ids are in range"));
-    EXPECT_EQ(result.bad_cells, std::vector<CellId>{1});
+    EXPECT_EQ(result.bad_cells, std::vector<GlobalId>{1});
   }
 }
 
@@ -53,7 +53,7 @@ TEST(Structure, DistinguishesInvertedFlatAndLeftHanded) {
   EXPECT_TRUE(names(result, "cells are positively oriented"));
   EXPECT_EQ(result.details()["negative_cells"], 1);
   EXPECT_FALSE(result.details()["is_left_handed"]);
-  EXPECT_EQ(result.bad_cells, std::vector<CellId>{7});
+  EXPECT_EQ(result.bad_cells, std::vector<GlobalId>{7});
 
   result = structure_of(two_cells({0.25, 0.25, 0}));
   EXPECT_TRUE(names(result, "no cell is flat"));

@@ -116,9 +116,9 @@ TEST(SurfaceVertices, TheBoundDecidesOnEitherSide) {
         const ClaimResult far = with(1.1);
         EXPECT_EQ(far.verdict, Verdict::kFail);
         EXPECT_EQ(far.num_violations, 1U);
-        EXPECT_EQ(far.bad_cells, std::vector<CellId>{0});
+        EXPECT_EQ(far.bad_cells, std::vector<GlobalId>{0});
         ASSERT_EQ(far.worst.size(), 1U);
-        EXPECT_EQ(far.worst[0].vertices, std::vector<VertexId>{0});
+        EXPECT_EQ(far.worst[0].vertices, std::vector<GlobalId>{0});
         EXPECT_EQ(far.worst[0].points.size(), 2U) << "the vertex, and where the label is another";
         EXPECT_EQ(far.worst[0].label, sign > 0 ? 0 : 1);
         EXPECT_NEAR(far.worst[0].value, 1.1 * kBound, 0.1 * kBound);
@@ -153,7 +153,7 @@ TEST(SurfaceVertices, LabelsOfFacetsAreWithinReach) {
   const ClaimResult result = surface_vertices_of(mesh, image, 0.99 * least_delta);
   EXPECT_EQ(result.verdict, Verdict::kFail);
   ASSERT_EQ(result.num_violations, 1U);
-  EXPECT_EQ(result.worst[0].vertices, std::vector<VertexId>{0});
+  EXPECT_EQ(result.worst[0].vertices, std::vector<GlobalId>{0});
   EXPECT_EQ(result.worst[0].label, 2);
   EXPECT_EQ(result.details().at("vertices_off_own_labels"), 4);
   for (const LabelValue unknown : {LabelValue{3}, LabelValue{-1}, LabelValue{1} << 40}) {

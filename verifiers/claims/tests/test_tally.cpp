@@ -32,18 +32,16 @@ TEST(TallyOver, AddsUpCountsWitnessesAndBins) {
   for (const int threads : {1, 3}) {
     Tally empty;
     empty.bins.push_back(bins_of_degrees("angle"));
-    const Tally tally = tally_over(90, threads, empty, [](std::size_t i, Tally& part) {
+    const Tally tally = tally_over({0, 90}, threads, empty, [](std::size_t i, Tally& part) {
       ++part.num_checked;
       part.bins[0].add(static_cast<double>(i));
-      if (i % 30 == 0)
-        part.violation(
-            {.statement = "s", .cells = {static_cast<CellId>(i)}, .severity = static_cast<double>(i)});
+      if (i % 30 == 0) part.violation({.statement = "s", .cells = {i}, .severity = static_cast<double>(i)});
     });
     const ClaimResult result = result_of("claim", tally);
     EXPECT_EQ(result.verdict, Verdict::kFail);
     EXPECT_EQ(result.num_checked, 90u);
     EXPECT_EQ(result.num_violations, 3u);
-    EXPECT_EQ(result.bad_cells, (std::vector<CellId>{0, 30, 60}));
+    EXPECT_EQ(result.bad_cells, (std::vector<GlobalId>{0, 30, 60}));
     EXPECT_EQ(result.worst.at(0).severity, 60) << "the worst first";
     const Histogram& angles = result.histograms.at(0);
     EXPECT_EQ(angles.minimum, 0);
