@@ -1,5 +1,5 @@
-"""Meshes on ranks. podm-verify proves each from its pieces, and podm replay makes it again. ci/ranks.sh calls this
-script.
+"""Meshes on ranks. podm-verify and podm-verify-mpi prove each from its pieces, and podm replay makes it again.
+ci/ranks.sh calls this script.
 
 `random` makes runs of podm-mpi with its ranks in one process. A seed alone determines phantom, ranks, algorithm,
 threads, initial ratio, R7 and the cuts of blocks. Some runs are killed or end at a limit, and a run on another number
@@ -23,7 +23,8 @@ import time
 
 PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"]
 MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
-VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
+VERIFIER, VERIFIER_ON_RANKS = (os.path.join(os.path.dirname(PROGRAM), name)
+                               for name in ("podm-verify", "podm-verify-mpi"))
 # fidelity is left out: meshes that are coarser than a structure miss it, on one machine and on ranks.
 CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "conformity", "surface", "labels",
           "surface_vertices"}
@@ -129,12 +130,13 @@ def prove(run, folder):
     if record["stop_reason"] != "complete" or any(record["guarantees"].values()):
         raise Failed(f"ended as {record['stop_reason']}, guarantees missed: {record['guarantees']}")
     report = folder / "report.json"
-    call([VERIFIER, folder / "out.pvtu", "--image", run.sample.path, "--radius", run.sample.radius_mm, "--claims",
-          ",".join(sorted(CLAIMS)), "--json", report, "--quiet"], accepted=(0, 1))
-    claims = json.loads(report.read_text())["claims"]
-    unproved = {claim for claim in CLAIMS if claims.get(claim, {}).get("verdict") != "pass"}
-    if unproved:
-        raise Failed(f"podm-verify does not prove {', '.join(sorted(unproved))}: {json.dumps(claims)[:3000]}")
+    for verifier in [VERIFIER], [VERIFIER_ON_RANKS, "--in-process", 1 + record["cells"] % 5]:
+        call([*verifier, folder / "out.pvtu", "--image", run.sample.path, "--radius", run.sample.radius_mm, "--claims",
+              ",".join(sorted(CLAIMS)), "--json", report, "--quiet"], accepted=(0, 1))
+        claims = json.loads(report.read_text())["claims"]
+        unproved = {claim for claim in CLAIMS if claims.get(claim, {}).get("verdict") != "pass"}
+        if unproved:
+            raise Failed(f"{verifier} does not prove {', '.join(sorted(unproved))}: {json.dumps(claims)[:3000]}")
     ranks = range(record["ranks"]["number"])
     logs = [] if run.cut else [f"run.log.{i}" for i in ranks]
     if logs:

@@ -413,8 +413,14 @@ class PartReader {
     add(facets_);
     const auto is_before = [](const PointOfPiece& a, const PointOfPiece& b) { return a.id < b.id; };
     std::sort(others.begin(), others.end(), is_before);
+    others.erase(std::unique(others.begin(), others.end(),
+                             [](const PointOfPiece& a, const PointOfPiece& b) { return a.id == b.id; }),
+                 others.end());
     std::vector<PointOfPiece>& own = pieces_.points();
     new_place_.reserve(own.size());
+    part_.vertices.reserve(own.size() + others.size());
+    part_.is_own_vertex.reserve(own.size() + others.size());
+    whole_.vertices.reserve(own.size() + others.size());
     std::size_t v = 0;
     const auto append = [&](const PointOfPiece& point, bool is_own) {
       part_.vertices.push_back(point.id);
@@ -423,7 +429,7 @@ class PartReader {
     };
     for (const PointOfPiece& other : others) {
       for (; v < own.size() && own[v].id <= other.id; ++v) append_own(v, append);
-      if (part_.vertices.empty() || part_.vertices.back() != other.id) append(other, false);
+      if (part_.vertices.empty() || part_.vertices.back() != other.id) append(other, false);  // not own
     }
     for (; v < own.size(); ++v) append_own(v, append);
     release(own);
@@ -448,6 +454,8 @@ class PartReader {
     const auto first_after = std::find_if(guests_.begin(), guests_.end(), [&](const SentCell& guest) {
       return guest.number >= part_.first_cells[rank()];
     });
+    whole_.cells.reserve(guests_.size() + own.cells.size());
+    if (part_.has_cell_labels) whole_.cell_labels.reserve(whole_.cells.capacity());
     const auto add = [&](const SentCell& guest) {
       part_.other_cells.push_back(guest.number);
       std::array<VertexId, 4> corners;
