@@ -113,6 +113,10 @@ void check_affine(const LabelImage& image) {
 void check_options(const LabelImage& image, const MeshingOptions& options) {
   if (image.labels.size() < 2 || image.voxels.size() != image.num_voxels())
     throw InputError("the image has no foreground");
+  check_options_but_voxels(image, options);
+}
+
+void check_options_but_voxels(const LabelImage& image, const MeshingOptions& options) {
   check_affine(image);
   check_sizes(image, options.sizes);
   check_ranges(options);

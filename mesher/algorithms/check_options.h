@@ -8,5 +8,7 @@ namespace podm {
 /// Throws InputError, which names the fault, on options that contradict each other or the image, and on an
 /// image without foreground or with an affine that does not match its voxels.
 void check_options(const LabelImage& image, const MeshingOptions& options);
+/// The same, without a look at the voxels: they may stay in the image's file.
+void check_options_but_voxels(const LabelImage& image, const MeshingOptions& options);
 
 }  // namespace podm

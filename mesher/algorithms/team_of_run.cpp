@@ -1,6 +1,7 @@
 #include "algorithms/team_of_run.h"
 
 #include "algorithms/image_owners.h"
+#include "image/image_by_bricks.h"
 
 namespace podm {
 
@@ -21,7 +22,7 @@ TeamOfRun::TeamOfRun(const MeshingOptions& options)
     : options_(options), placement_(place_team(options.team)), size_(team_size(options, placement_.places)) {}
 
 void TeamOfRun::locate_memory(const LabelImage& image, const FeatureTransform& transform) {
-  if (placement_.machine.num_nodes() == 1) return;
+  if (placement_.machine.num_nodes() == 1 || by_bricks(image) != nullptr) return;
   owners_ = owners_of_image(image, transform, placement_, options_.team.seed, nodes_of_pages);
   if (placement_.is_real) pages_.emplace(placement_.machine, *owners_, nodes_of_pages);
 }

@@ -10,8 +10,10 @@
 
 #include "algorithms/check_options.h"
 #include "distributed/collective_errors.h"
+#include "distributed/image_digest.h"
 #include "distributed/pieces.h"
 #include "distributed/report_of_ranks.h"
+#include "image/image_by_bricks.h"
 #include "io/sha256.h"
 #include "podm/mesh_io.h"
 #include "run/calibrate.h"
@@ -62,12 +64,12 @@ std::string hash_of(const SizeImage* image) {
   return "SHA-256 " + hash.hexadecimal();
 }
 
-std::string hash_of(const LabelImage& image) {
+std::string hash_of(const LabelImage& image, int threads) {
   Sha256 hash;
   hash.update(std::span<const int>(image.size));
   hash.update(std::span<const double>(image.spacing));
   hash.update(std::span<const double>(image.voxel_to_ras));
-  hash.update(std::span<const LabelIndex>(image.voxels));
+  hash.update(std::span<const char>(digest_of(image, threads)));
   for (const Label& label : image.labels) {
     hash.update(std::span<const std::uint32_t>(&label.value, 1));
     hash.update(std::span<const char>(label.name));
@@ -101,7 +103,7 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"seed", fmt::format("{}", options.cut_seed)},
           {"limit of elements", fmt::format("{}", options.limits.max_elements)},
           {"limit of seconds", fmt::format("{}", options.limits.max_seconds)},
-          {"image", "SHA-256 " + hash_of(image)}};
+          {"image", "SHA-256 " + hash_of(image, loop_threads(options.team))}};
 }
 
 // Returns the facts that a run shares with the checkpoint that it resumes. Limits and the cuts between blocks
@@ -171,7 +173,8 @@ class RunOnRank {
                     .rounds = refined_->rounds,
                     .perturbing_rounds = refined_->perturbing_rounds,
                     .seeds = refined_->seeds,
-                    .last_update = refined_->last_update};
+                    .last_update = refined_->last_update,
+                    .image_bytes_read = phases_.isosurface().transform().bytes_read()};
     std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
     phases_.promise_dihedral_bounds(result.piece.mesh, result.report);
     result.report.guarantees.missing_labels =
@@ -307,7 +310,8 @@ MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions
   std::optional<RunOnRank> run;
   do_collectively(
       [&] {
-        check_options(image, options);
+        by_bricks(image) != nullptr ? check_options_but_voxels(image, options)
+                                    : check_options(image, options);
         check_options_on_ranks(options);
         check_checkpoints(checkpoints, options, ranks.size());
         run.emplace(image, options, ranks, progress, end, isosurface);

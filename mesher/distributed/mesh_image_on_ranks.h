@@ -24,6 +24,9 @@ struct PartOfRank {
   std::vector<RoundReport> rounds, perturbing_rounds;  ///< of R1 to R6, and of R7; empty on one rank
   std::uint64_t seeds = 0;                             ///< as in DistributedRefinement
   Update last_update;                                  ///< the update that completed its block
+  /// Memory of the parts of the image that were read when they were first needed. Ranks of a process share
+  /// it.
+  std::uint64_t image_bytes_read = 0;
 };
 
 struct MeshingOnRanks {

@@ -74,7 +74,8 @@ std::vector<Value> values_of(const std::map<Key, Value>& map) {
 // (those of the run).
 Bytes message_of(const MeshingReport& own, const PartOfRank& part) {
   Bytes message;
-  append_one(message, std::array{part.cells, part.boundary_facets, part.store_cells, part.seeds});
+  append_one(message, std::array{part.cells, part.boundary_facets, part.store_cells, part.seeds,
+                                 part.image_bytes_read});
   append(message, values_of(part.phases_s));
   append(message, values_of(part.spent));
   append(message, part.rounds);
@@ -157,7 +158,7 @@ MeshingReport none_like(MeshingReport own) {
 PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, MeshingReport& report,
                             bool is_first) {
   MessageReader reader(message);
-  const auto numbers = read_one<std::array<std::uint64_t, 4>>(reader);
+  const auto numbers = read_one<std::array<std::uint64_t, 5>>(reader);
   PartOfRank part{.cells = numbers[0],
                   .boundary_facets = numbers[1],
                   .store_cells = numbers[2],
@@ -166,7 +167,8 @@ PartOfRank add_part_of_rank(const Bytes& message, const PartOfRank& like, Meshin
                   .rounds = {},
                   .perturbing_rounds = {},
                   .seeds = numbers[3],
-                  .last_update = {}};
+                  .last_update = {},
+                  .image_bytes_read = numbers[4]};
   clear(part.phases_s);
   add(reader.read<double>(), part.phases_s);
   clear(part.spent);

@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 
+#include "image/image_by_bricks.h"
 #include "image/rows_of_image.h"
 #include "image/stretches.h"
 #include "image/working_frame.h"
@@ -47,9 +48,16 @@ struct VoxelBounds {
   }
 };
 
+VoxelBounds voxel_bounds(const LabelImage& image, int threads) {
+  if (const ImageByBricks* in_file = by_bricks(image)) return {in_file->low, in_file->high};
+  return sum_over_rows(image, threads, VoxelBounds{image.size},
+                       [&](VoxelBounds& bounds, int j, int k) { bounds.add_row(image, j, k); });
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
+  if (const ImageByBricks* in_file = by_bricks(image)) return in_file->voxels_of_label;
   const LabelCounts none{std::vector<std::uint64_t>(image.labels.size())};
   const auto add = [&](LabelCounts& counts, int j, int k) {
     add_row(&image.voxels[image.index(0, j, k)], image.size[0], counts);
@@ -58,9 +66,7 @@ std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {
-  const VoxelBounds all =
-      sum_over_rows(image, threads, VoxelBounds{image.size},
-                    [&](VoxelBounds& bounds, int j, int k) { bounds.add_row(image, j, k); });
+  const VoxelBounds all = voxel_bounds(image, threads);
   if (all.high[0] < 0) throw InputError("the image has no foreground");
   const Affine a = voxels_to_working(image);
   const auto bound = [&](std::size_t row,

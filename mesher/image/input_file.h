@@ -23,6 +23,7 @@ class InputFile {
   /// Every member throws InputError naming `path` and the fault.
   explicit InputFile(const std::string& path);
 
+  bool is_compressed() const { return gzdirect(file_.get()) == 0; }
   /// Reads exactly `size` bytes. A file that ends before is refused as truncated.
   void read(void* bytes, std::size_t size);
   void skip(std::uint64_t size);

@@ -79,8 +79,8 @@ void replace_voxels(std::vector<LabelIndex>& voxels, const std::vector<LabelInde
 class SelectedLabels {
  public:
   SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path,
-                 std::size_t threads)
-      : path_(path), background_(selection.background), present_(values_with_voxels(image, threads)) {
+                 const std::set<std::uint32_t>& present)
+      : path_(path), background_(selection.background), present_(present) {
     for (const Segment& segment : image.segments)
       if (segment.covered > 0) covered_.insert(segment.label.value);
     expect_labels(selection.keep, spelled("labels", "keep"));
@@ -119,7 +119,7 @@ class SelectedLabels {
 
   const std::string& path_;
   std::uint32_t background_;
-  std::set<std::uint32_t> present_;
+  const std::set<std::uint32_t>& present_;
   std::set<std::uint32_t> covered_;  // by other segments, perhaps entirely
   std::map<std::uint32_t, Label> becomes_;
 };
@@ -187,10 +187,10 @@ LabelSelection::Merge parse_merge(const std::string& text) {
   return merge;
 }
 
-void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
-                   std::size_t threads) {
+std::vector<LabelIndex> select_among(LabelImage& image, const LabelSelection& selection,
+                                     const std::set<std::uint32_t>& present, const std::string& path) {
   take_names(image, selection);
-  const SelectedLabels selected(image, selection, path, threads);
+  const SelectedLabels selected(image, selection, path, present);
   std::map<std::uint32_t, Label> final_labels;  // by value
   for (const auto& [value, label] : selected.by_value()) final_labels[label.value] = label;
   if (final_labels.empty()) refuse(path, "no foreground: every voxel is background or deselected");
@@ -210,8 +210,14 @@ void select_labels(LabelImage& image, const LabelSelection& selection, const std
     if (const auto label = selected.by_value().find(image.labels[i].value);
         label != selected.by_value().end())
       replacement[i] = new_index.at(label->second.value);
-  replace_voxels(image.voxels, replacement, threads);
   image.labels = std::move(labels);
+  return replacement;
+}
+
+void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
+                   std::size_t threads) {
+  const std::set<std::uint32_t> present = values_with_voxels(image, threads);
+  replace_voxels(image.voxels, select_among(image, selection, present, path), threads);
   if (selection.drop_islands_mm3 != 0) drop_islands(image, selection.drop_islands_mm3, path);
 }
 

@@ -109,25 +109,52 @@ void read_compressed_voxels(const VoxelData& data, RawImage& raw, std::size_t ne
   if (data.is_big_endian) swap_bytes(raw.bytes, bytes_of(raw.type));
 }
 
-}  // namespace
+VoxelData find_voxels(const std::string& path) {
+  return is_nrrd(path) ? find_nrrd_voxels(path) : find_meta_voxels(path);
+}
 
-RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
-  const VoxelData data = is_nrrd(path) ? find_nrrd_voxels(path) : find_meta_voxels(path);
-  const itk::ImageIOBase::Pointer io = reader_for(path);
+RawImage read_size_and_type(itk::ImageIOBase& io, const std::string& path) {
   constexpr itk::SizeValueType kLongestAxis = std::numeric_limits<int>::max();
   RawImage raw;
   raw.path = path;
+  if (!io.CanReadFile(path.c_str()))
+    refuse(path, "not a file of the format of its name (wrong magic or header)");
+  io.SetFileName(path);
+  io.ReadImageInformation();
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+    raw.size.push_back(static_cast<int>(std::min<itk::SizeValueType>(io.GetDimensions(axis), kLongestAxis)));
+  read_layers(raw, io);
+  raw.type = voxel_type(path, io);
+  return raw;
+}
+
+// Returns read(), and refuses the file with ITK's reason if ITK fails.
+template <class Read>
+auto of_itk(const std::string& path, const Read& read) {
   try {
-    if (!io->CanReadFile(path.c_str()))
-      refuse(path, "not a file of the format of its name (wrong magic or header)");
-    io->SetFileName(path);
-    io->ReadImageInformation();
-    for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) {
-      raw.size.push_back(
-          static_cast<int>(std::min<itk::SizeValueType>(io->GetDimensions(axis), kLongestAxis)));
-    }
-    read_layers(raw, *io);
-    raw.type = voxel_type(path, *io);
+    return read();
+  } catch (const itk::ExceptionObject& error) {
+    refuse(path, "cannot be read (" + one_line(error.GetDescription()) + ")");
+  }
+}
+
+}  // namespace
+
+ImageHead read_head_with_itk(const std::string& path) {
+  const VoxelData data = find_voxels(path);
+  const itk::ImageIOBase::Pointer io = reader_for(path);
+  return of_itk(path, [&] {
+    ImageHead head{read_size_and_type(*io, path), data};
+    head.image.voxel_to_ras = voxel_to_ras(path, *io);
+    return head;
+  });
+}
+
+RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
+  const VoxelData data = find_voxels(path);
+  const itk::ImageIOBase::Pointer io = reader_for(path);
+  return of_itk(path, [&] {
+    RawImage raw = read_size_and_type(*io, path);
     const std::size_t needed = checked_num_bytes(raw, most_bytes);
     if (data.is_compressed && !is_nrrd(path)) {
       read_compressed_voxels(data, raw, needed);
@@ -136,10 +163,8 @@ RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
       read_voxels(*io, raw, needed);
     }
     raw.voxel_to_ras = voxel_to_ras(path, *io);
-  } catch (const itk::ExceptionObject& error) {
-    refuse(path, "cannot be read (" + one_line(error.GetDescription()) + ")");
-  }
-  return raw;
+    return raw;
+  });
 }
 
 }  // namespace podm

@@ -2,6 +2,7 @@
 // not finite, refuses shear or silently falls back to the qform, and fills missing voxels with zeros.
 #include <nifti/nifti1_io.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -104,11 +105,7 @@ std::uint64_t voxel_offset(const nifti_1_header& header, const std::string& path
   return static_cast<std::uint64_t>(std::max(header.vox_offset, kSmallest));
 }
 
-}  // namespace
-
-RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
-  InputFile file(path);
-  const auto [header, is_swapped] = read_header(file, path);
+RawImage image_of(const nifti_1_header& header, const std::string& path) {
   RawImage raw;
   raw.path = path;
   raw.size = sizes(header, path);
@@ -121,7 +118,22 @@ RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < 4; ++column)
       raw.voxel_to_ras[4 * row + column] = unit_mm(header) * static_cast<double>(a.m[row][column]);
+  return raw;
+}
 
+}  // namespace
+
+ImageHead read_nifti_head(const std::string& path) {
+  InputFile file(path);
+  const auto [header, is_swapped] = read_header(file, path);
+  static_assert(std::endian::native == std::endian::little);
+  return {image_of(header, path), {path, voxel_offset(header, path), file.is_compressed(), is_swapped}};
+}
+
+RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
+  InputFile file(path);
+  const auto [header, is_swapped] = read_header(file, path);
+  RawImage raw = image_of(header, path);
   const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);
   file.skip(voxel_offset(header, path) - sizeof header);

@@ -3,8 +3,10 @@
 
 namespace podm {
 
-RawImage read_with_itk(const std::string& path, std::uint64_t) {
+ImageHead read_head_with_itk(const std::string& path) {
   refuse(path, "this program was built without ITK, which reads NRRD and MetaImage; it reads NIfTI and INR");
 }
+
+RawImage read_with_itk(const std::string& path, std::uint64_t) { return read_head_with_itk(path).image; }
 
 }  // namespace podm

@@ -197,8 +197,9 @@ VoxelData find_nrrd_voxels(const std::string& path) {
   if (!is_compressed && encoding != "raw")
     refuse(path, "encoding '" + encoding + "' is not supported (raw and gzip are)");
   const std::string file = header.field("data file") + header.field("datafile");
-  if (file.empty()) return {path, header.bytes, is_compressed};
-  return {beside(path, file), 0, is_compressed};
+  const bool is_big_endian = lower(header.field("endian")) == "big";
+  if (file.empty()) return {path, header.bytes, is_compressed, is_big_endian};
+  return {beside(path, file), 0, is_compressed, is_big_endian};
 }
 
 VoxelData find_meta_voxels(const std::string& path) {

@@ -12,7 +12,7 @@ struct VoxelData {
   std::string path;  ///< of the image file, or of a file beside it
   std::uint64_t offset = 0;
   bool is_compressed = false;  ///< a zlib or gzip stream
-  bool is_big_endian = false;  ///< set for MetaImage only
+  bool is_big_endian = false;
   std::string announced_bytes =
       {};  ///< of a compressed stream, as in the header; empty if the header has none
 };

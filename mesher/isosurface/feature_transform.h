@@ -15,6 +15,11 @@
 // come their mask and their neighborhoods. One read of the table and one of a line of words and of
 // neighborhoods therefore give the label and the shape of the isosurface.
 //
+// Where the voxels stay in the image's file (image_by_bricks.h), the words of near bricks are made when a
+// query first needs them (unread_bricks.h). Until then their entries say so. The words are the same as those
+// of the whole image, so all answers are. The labels of a brick with surface voxels are stored before its
+// words.
+//
 // The bound is found as follows. A box of voxels contains all points whose nearest voxel is one of its
 // voxels, and all isosurface points within half a voxel of its surface voxels. The distance between boxes is
 // therefore a lower bound of the distance between such points. Along an axis, the boxes of bricks n > 0 apart
@@ -27,6 +32,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -53,8 +59,11 @@ class Brick {
   static constexpr Brick far(LabelIndex label, std::uint16_t steps) {
     return Brick(std::uint64_t{label} << 32 | std::uint64_t{steps} << 48);
   }
+  /// A near brick whose words have not been made.
+  static constexpr Brick unread(LabelIndex label) { return near(kUnread, label); }
   constexpr explicit Brick(std::uint64_t word) : word_(word) {}
 
+  constexpr bool is_unread() const { return line() == kUnread; }
   constexpr bool is_near() const { return line() != 0; }
   /// The position of the brick's words, in lines of 64 bytes.
   constexpr std::uint32_t line() const { return static_cast<std::uint32_t>(word_); }
@@ -65,16 +74,21 @@ class Brick {
   constexpr std::uint64_t word() const { return word_; }
 
  private:
+  static constexpr std::uint32_t kUnread = ~0u;
+
   std::uint64_t word_;
 };
+
+class UnreadBricks;
 
 class FeatureTransform {
  public:
   /// Runs on `threads` threads (0: all cores). The result is the same for any number of threads. Throws
-  /// InputError if the image has more than kMaxVoxels.
+  /// InputError if the image has more than kMaxVoxels, or kMaxBricks if its voxels stay in the file.
   FeatureTransform(const LabelImage& image, int threads);
+  ~FeatureTransform();
   /// The memory that the transform of an image takes while it is made, in bytes. Counting takes a tenth of
-  /// the transform's time.
+  /// the transform's time. If the voxels stay in the file, an estimate for all bricks.
   static std::uint64_t num_bytes(const LabelImage& image, int threads);
   /// The largest num_bytes() of any image of this size.
   static std::uint64_t most_bytes(const LabelImage& image);
@@ -87,12 +101,19 @@ class FeatureTransform {
   /// The table, by brick, followed by the lines of words, which begin at the next multiple of eight.
   std::span<const std::uint64_t> words() const { return {&words_[0], num_words_}; }
 
+  /// Makes the words of an unread brick, unless another thread has made them, and returns its entry. Throws
+  /// InputError if the file cannot be read.
+  Brick read_brick(std::size_t index) const;
+  /// The memory of words that were made when they were first needed, in bytes.
+  std::uint64_t bytes_read() const;
+
  private:
   BrickGrid bricks_;
   HugeArray<std::uint64_t> words_;
   std::size_t num_words_ = 0;
   SurfaceTree tree_;
   double step_mm_ = 0, reach_mm_ = 0;
+  std::unique_ptr<UnreadBricks> unread_;  // null if the image holds its voxels
 };
 
 /// The data that the transform stores of a voxel: the entry of its brick, and its word.
@@ -210,9 +231,15 @@ class Features {
   /// `v` must be a surface voxel.
   Neighborhood neighborhood(const Voxel& v) const { return neighborhood(brick_of(v), v); }
 
+  /// The label of a voxel, if the voxels stay in the image's file.
+  LabelIndex label(const Voxel& v) const {
+    const Brick brick = brick_of(v);
+    return brick.label() == Brick::kMixed ? label_in_mixed(brick, place_in_brick(v)) : brick.label();
+  }
+
   /// Prefetches the line of v's word. Reads the table.
   void prefetch(const Voxel& v) const {
-    const Brick brick(words_[bricks_.index_of_voxel(v)]);
+    const Brick brick(entry(bricks_.index_of_voxel(v)));
     __builtin_prefetch(bytes() + byte_of_word(brick, place_in_brick(v)));
   }
 
@@ -228,7 +255,19 @@ class Features {
     std::memcpy(&value, bytes() + byte, sizeof value);
     return value;
   }
-  Brick brick(std::size_t index) const { return Brick(read<std::uint64_t>(index * sizeof(std::uint64_t))); }
+  // Another thread may store the entry after it has made the brick's words.
+  std::uint64_t entry(std::size_t index) const { return __atomic_load_n(words_ + index, __ATOMIC_ACQUIRE); }
+  Brick brick(std::size_t index) const {
+    reads_.transform(index);
+    const Brick brick(entry(index));
+    if (brick.is_unread()) [[unlikely]]
+      return transform_->read_brick(index);
+    return brick;
+  }
+  // The labels lie before the words.
+  LabelIndex label_in_mixed(Brick brick, unsigned place) const {
+    return read<LabelIndex>(byte_of_word(brick, place) - kBytesOfWords);
+  }
   static std::size_t byte_of_word(Brick brick, unsigned place) {
     return brick.line() * kLineBytes + sizeof(std::uint16_t) * place;
   }

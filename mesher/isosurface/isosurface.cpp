@@ -21,7 +21,7 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
     : image_(&image),
       transform_(std::move(transform)),
       weights_(std::move(weights)),
-      grid_(image, reads),
+      grid_(image, reads, transform_.get()),
       features_(*transform_, reads),
       from_voxels_(voxels_to_working(image)),
       to_voxels_(inverse(from_voxels_)),

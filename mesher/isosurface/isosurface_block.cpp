@@ -1,5 +1,7 @@
 #include "isosurface/isosurface_block.h"
 
+#include "isosurface/feature_transform.h"
+
 namespace podm {
 
 template <class Weights>
@@ -20,6 +22,23 @@ Winner winner(const BlockLabels& labels, const Point& f, const Weights& weights)
 
 template Winner winner(const BlockLabels&, const Point&, const UnitWeights&);
 template Winner winner(const BlockLabels&, const Point&, const CornerWeights&);
+
+template <class Reads>
+LabelIndex LabelGrid<Reads>::label_from_transform(const Voxel& v) const {
+  return Features<Reads>(*transform_, reads_).label(v);
+}
+
+template <class Reads>
+BlockLabels LabelGrid<Reads>::block_from_transform(const Voxel& b) const {
+  const Features<Reads> features(*transform_, reads_);
+  BlockLabels labels;
+  for (int c = 0; c < 8; ++c) {
+    const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
+    labels.corner[static_cast<std::size_t>(c)] = contains(v) ? features.label(v) : kBackground;
+  }
+  return labels;
+}
+
 template class LabelGrid<NoReads>;
 template class LabelGrid<CountedReads>;
 

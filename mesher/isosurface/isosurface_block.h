@@ -148,13 +148,16 @@ Winner winner(const BlockLabels& labels, const Point& f, const Weights& weights 
 extern template Winner winner(const BlockLabels&, const Point&, const UnitWeights&);
 extern template Winner winner(const BlockLabels&, const Point&, const CornerWeights&);
 
+class FeatureTransform;
+
 /// Labels of an image, with background outside. Keeps a reference to the voxels. `Reads` receives each part
-/// of a row that is read.
+/// of a row that is read. If the voxels stay in the image's file, labels come from `transform`, the image's.
 template <class Reads>
 class LabelGrid {
  public:
-  LabelGrid(const LabelImage& image, const Reads& reads)
+  LabelGrid(const LabelImage& image, const Reads& reads, const FeatureTransform* transform = nullptr)
       : reads_(reads),
+        transform_(image.voxels.empty() ? transform : nullptr),
         voxels_(image.voxels.data()),
         num_x_(image.size[0]),
         num_y_(image.size[1]),
@@ -171,12 +174,20 @@ class LabelGrid {
   }
 
   /// `v` must be inside the grid.
-  LabelIndex label_inside(const Voxel& v) const { return *row_from(index(v)); }
+  LabelIndex label_inside(const Voxel& v) const {
+    if (transform_ != nullptr) [[unlikely]]
+      return label_from_transform(v);
+    return *row_from(index(v));
+  }
   LabelIndex label(const Voxel& v) const { return contains(v) ? label_inside(v) : kBackground; }
-  void prefetch(const Voxel& v) const { __builtin_prefetch(voxels_ + index(v)); }
+  void prefetch(const Voxel& v) const {
+    if (transform_ == nullptr) __builtin_prefetch(voxels_ + index(v));
+  }
 
   BlockLabels block(const Voxel& b) const {
     BlockLabels labels;
+    if (transform_ != nullptr) [[unlikely]]
+      return block_from_transform(b);
     if (is_in(b.i, num_x_ - 1) && is_in(b.j, num_y_ - 1) && is_in(b.k, num_z_ - 1)) {
       const std::size_t first = index(b);
       std::memcpy(&labels.corner[0], row_from(first), 2 * sizeof(LabelIndex));
@@ -203,7 +214,11 @@ class LabelGrid {
     return voxels_ + index;
   }
 
+  LabelIndex label_from_transform(const Voxel& v) const;
+  BlockLabels block_from_transform(const Voxel& b) const;
+
   [[no_unique_address]] Reads reads_;
+  const FeatureTransform* transform_;  // null if the image holds its voxels
   const LabelIndex* voxels_;
   int num_x_, num_y_, num_z_;
   std::size_t row_, slice_;  // voxels

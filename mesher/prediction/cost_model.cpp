@@ -9,7 +9,10 @@
 
 #include "algorithms/memory_model.h"
 #include "algorithms/team_size.h"
+#include "image/image_by_bricks.h"
+#include "image/interface_sides.h"
 #include "image/rows_of_image.h"
+#include "isosurface/feature_transform.h"
 #include "runtime/parallel_for.h"
 #include "sizing/default_sizes.h"
 #include "sizing/make_size_grid.h"
@@ -17,48 +20,6 @@
 namespace podm {
 
 namespace {
-
-std::uint64_t count_foreground(const LabelIndex* row, int size) {
-  std::uint32_t count = 0;
-  for (int i = 0; i < size; ++i) count += row[i] != kBackground;
-  return count;
-}
-
-// Counts the sides of interfaces that have a label. The counts of a part of the row fit in the words of the
-// labels, so that one instruction of the processor counts as many pairs as it compares.
-std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
-  constexpr int kPart = 1 << 14;
-  std::uint64_t sum = 0;
-  for (int begin = 0; begin < size; begin += kPart) {
-    LabelIndex count = 0;
-    for (int i = begin; i < std::min(size, begin + kPart); ++i)
-      count =
-          static_cast<LabelIndex>(count + (a[i] == b[i] ? 0 : (a[i] != kBackground) + (b[i] != kBackground)));
-    sum += count;
-  }
-  return sum;
-}
-
-// Counts sides between voxels `lag` apart along the axis. Counts all pairs whose first voxel is in the row,
-// and those pairs whose second voxel is in the row and whose first is outside the image. Outside is
-// background.
-std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k) {
-  const int size = image.size[0];
-  const LabelIndex* const row = &image.voxels[image.index(0, j, k)];
-  if (axis == 0) {
-    const int inside = std::max(0, size - lag), border = size - inside;
-    return count_sides(row, row + lag, inside) + count_foreground(row, border) +
-           count_foreground(row + inside, border);
-  }
-  const int position = axis == 1 ? j : k;
-  const std::size_t step = image.index(0, axis == 1 ? 1 : 0, axis == 1 ? 0 : 1);
-  const std::uint64_t foreground =
-      position < lag || position + lag >= image.size[axis] ? count_foreground(row, size) : 0;
-  const std::uint64_t after = position + lag < image.size[axis]
-                                  ? count_sides(row, row + step * static_cast<std::size_t>(lag), size)
-                                  : foreground;
-  return after + (position < lag ? foreground : 0);
-}
 
 // Adds the sides by label, including the background, for the same pairs of voxels.
 void add_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k,
@@ -100,10 +61,12 @@ CostModel::CostModel(const LabelImage& image, int threads, std::optional<SizeCen
 double CostModel::area_along_mm2(std::size_t axis, std::size_t lag) const {
   auto& known = area_along_mm2_[axis][lag];
   if (known) return *known;
+  const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
+  if (const ImageByBricks* in_file = by_bricks(image_))
+    return static_cast<double>(in_file->sides[axis]) * face_mm2;
   const std::uint64_t sides = sum_over_rows(
       image_, threads_, std::uint64_t{0},
       [&](std::uint64_t& sum, int j, int k) { sum += count_sides(image_, axis, kLags[lag], j, k); });
-  const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
   known = static_cast<double>(sides) / kLags[lag] * face_mm2;
   return *known;
 }
@@ -244,9 +207,12 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options, const 
     delta_mm = sizes.delta_mm = delta_mm_for(image, sizes, model.census());
     cells = model.cells(sizes);
   }
+  const double bytes_of_image =
+      by_bricks(image) != nullptr
+          ? static_cast<double>(FeatureTransform::num_bytes(image, 1))
+          : static_cast<double>(image.num_voxels()) * (sizeof(LabelIndex) + kTransformBytesPerVoxel);
   return {cells,
-          cells * kPeakBytesPerMeshCell +
-              static_cast<double>(image.num_voxels()) * (sizeof(LabelIndex) + kTransformBytesPerVoxel) +
+          cells * kPeakBytesPerMeshCell + bytes_of_image +
               static_cast<double>(bytes_of_size_grid(image, options.sizes)),
           delta_mm};
 }

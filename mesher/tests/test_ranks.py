@@ -12,7 +12,7 @@ import unittest
 
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 from slow import few, slow
-from small_images import ball_voxels, write_nifti
+from small_images import INT8, ball_voxels, voxels_of, write_metaimage, write_nifti, write_nrrd
 
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
@@ -333,6 +333,97 @@ class InProcess(OnRanks):
         self.assertEqual(self.out.exists(), record["cells"] > 0)
         if record["cells"]:
             self.assert_exit(run_podm(self.out, "--claims", "structure,delaunay,conformity", program=VERIFIER), 0)
+
+
+class ByBricks(OnRanks):
+    """Images whose voxels stay in the file."""
+
+    def hash_of(self, image, *arguments, held, number=3):
+        self.assert_exit(self.mesh(number, "--radius", 4, *arguments, image=image), 0)
+        ranks = self.last_record()["ranks"]
+        self.assertEqual(ranks["image"], held)
+        self.assertEqual([rank["image_bytes_read"] > 0 for rank in ranks["by_rank"]], number * [held == "by bricks"])
+        return ranks["mesh_hash"]
+
+    def images(self):
+        """Yields a file of each format with the same voxels."""
+        size = 40
+        voxels = ball_voxels(size)
+        yield write_nifti(self.folder / "ball.nii", voxels, (size,) * 3)
+        yield write_metaimage(self.folder / "ball.mha", voxels, size)
+        yield write_nrrd(self.folder / "ball.nrrd", voxels, size, "uint8")
+        (self.folder / "ball.raw").write_bytes(b"".join(bytes([0, voxel]) for voxel in voxels))
+        header = self.folder / "ball.nhdr"
+        header.write_text(f"NRRD0004\ntype: ushort\ndimension: 3\nsizes: {size} {size} {size}\nendian: big\n"
+                          "encoding: raw\ndata file: ball.raw\n")
+        yield header
+
+    def test_they_make_the_mesh_of_ranks_that_hold_the_image(self):
+        for image in few(self.images(), 2):
+            with self.subTest(image=image.name):
+                whole = self.hash_of(image, "--log", self.folder / "run.log", held="whole")
+                self.assertEqual(self.hash_of(image, held="by bricks"), whole)
+        self.assert_verifies(self.out, "--radius", 4, "--image", image)
+
+    @slow
+    def test_selections_and_r7(self):
+        image = self.folder / "abdomen.nii"
+        self.assert_exit(run_podm("phantom", "abdomen", "--size", 64, "-o", image), 0)
+        for options in ["--labels", "1-3"], ["--merge", "1,2=both", "--drop", 3], ["--min-dihedral", 5]:
+            with self.subTest(options=options):
+                whole = self.hash_of(image, *options, "--log", self.folder / "run.log", held="whole")
+                self.assertEqual(self.hash_of(image, *options, held="by bricks"), whole)
+
+    @slow
+    def test_one_that_no_process_may_hold(self):
+        """A sparse file of 1500^3 voxels makes the mesh of its only part with labels."""
+        length, size, corner = 1500, 96, (1368, 704, 1392)
+        middle = (size - 1) / 2
+
+        def label_at(*voxel):
+            distance = sum((x - middle) ** 2 for x in voxel) ** 0.5
+            return 0 if distance > 40 else 1 if distance > 20 else 2 + (voxel[0] > middle)
+
+        voxels = voxels_of(size, label_at)
+        with open(self.folder / "large.raw", "wb") as file:
+            file.truncate(length ** 3)
+            for row in range(size * size):
+                y, z = corner[1] + row % size, corner[2] + row // size
+                file.seek((z * length + y) * length + corner[0])
+                file.write(voxels[size * row:size * (row + 1)])
+        large = self.folder / "large.mhd"
+        large.write_text(f"ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = {length} {length} {length}\n"
+                         "ElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = large.raw\n")
+        small = self.folder / "small.mha"
+        header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\n"
+                  f"DimSize = {size} {size} {size}\nOffset = {corner[0]} {corner[1]} {corner[2]}\n"
+                  "ElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n")
+        small.write_bytes(header.encode() + voxels)
+        records = []
+        for image in large, small:
+            process = run_podm("mesh", image, "-o", self.out, "--record", self.runs, "--in-process", 8, "--radius", 4,
+                               program=MPI_PROGRAM, env=ENVIRONMENT)
+            self.assert_exit(process, 0)
+            self.assert_verifies(self.out, "--radius", 4, "--image", small)
+            records.append(self.last_record())
+        in_large, in_small = records
+        self.assertEqual(in_large["ranks"]["image"], "by bricks")
+        self.assertLess(in_large["peak_rss_bytes"], 2 * 2**30)
+        self.assertLess(abs(in_large["cells"] / in_small["cells"] - 1), 0.02)
+        self.assert_refused(["mesh", large, "-o", self.out], "large.mhd", "too large")
+
+    def test_faults_are_refused_by_all(self):
+        voxels = bytearray(ball_voxels(12))
+        voxels[-1] = 0xff  # -1
+        faulty = write_nifti(self.folder / "faulty.nii", bytes(voxels), datatype=INT8)
+        short = write_nifti(self.folder / "short.nii", bytes(voxels[:-1]))
+        for image, *words in (faulty, "-1", "no label"), (short, "truncated"):
+            with self.subTest(image=image.name):
+                process = self.mesh(2, image=image)
+                self.assert_exit(process, 2)
+                for word in (image.name, *words):
+                    self.assertIn(word, process.stderr)
+                self.assertFalse(self.out.exists())
 
 
 class Logs(OnRanks):

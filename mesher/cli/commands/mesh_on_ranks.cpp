@@ -19,6 +19,7 @@
 #include "cli/reports/ranks_record.h"
 #include "distributed/collective_errors.h"
 #include "distributed/in_process_ranks.h"
+#include "distributed/read_by_bricks.h"
 #include "distributed/write_pieces.h"
 #include "podm/mesh_io.h"
 #include "podm/operation_log.h"
@@ -99,18 +100,14 @@ class Run {
     if (command_.max_memory.bytes == 0 && !is_in_process())
       limit_bytes /= static_cast<std::uint64_t>(machines_.num_ranks_here());
     const double start_s = ranks_.seconds();
-    const auto make = [&] {
-      return std::make_shared<const LabelImage>(
-          read_labelled_image(command_.image, command_.meshing.team.threads, bytes_for_image(limit_bytes)));
-    };
+    read_image(limit_bytes);
     MeshingOptions options;
-    const auto read = [&] {
-      image_ = shared_.image.get(make, ranks_);
+    const auto complete = [&] {
       options = options_for_image(command_, *image_, limit_bytes, is_in_process() ? 1 : ranks_.size());
       options.limits.max_memory_bytes /= ranks_here;
       if (log_) options.log = &*log_;
     };
-    do_collectively(read, ranks_);
+    do_collectively(complete, ranks_);
     return {.command = command_,
             .image = *image_,
             .options = std::move(options),
@@ -120,6 +117,36 @@ class Run {
             .read_s = ranks_.seconds() - start_s,
             .verification = nullptr,
             .program = "podm-mpi"};
+  }
+
+  void read_image(std::uint64_t limit_bytes) {
+    const int threads = command_.meshing.team.threads;
+    std::shared_ptr<const VoxelFile> file;
+    LabelSelection selection;
+    const auto open = [&] {
+      if (!stays_in_file()) return;
+      file = VoxelFile::open(command_.image.path);
+      selection = with_table(command_.image);
+    };
+    do_collectively(open, ranks_);
+    std::array<std::uint64_t, 1> num_whole{file == nullptr ? 1u : 0u};
+    ranks_.sum(num_whole);
+    if (num_whole[0] == 0) {
+      image_ = read_by_bricks(file, selection, threads, shared_.image, ranks_);
+      return;
+    }
+    const auto make = [&] {
+      return std::make_shared<const LabelImage>(
+          read_labelled_image(command_.image, threads, bytes_for_image(limit_bytes)));
+    };
+    do_collectively([&] { image_ = shared_.image.get(make, ranks_); }, ranks_);
+  }
+
+  // A single rank has the image as a whole, and so has a rank with an option that needs all voxels.
+  bool stays_in_file() const {
+    return ranks_.size() > 1 && !command_.image.is_phantom() && command_.log_path.empty() &&
+           command_.size_near.empty() && command_.size_image_path.empty() &&
+           can_stay_in_file(command_.image.selection, command_.meshing);
   }
 
   std::string own_log_path() const {

@@ -10,6 +10,7 @@
 #include "cli/processes/process_memory.h"
 #include "cli/reports/json_text.h"
 #include "distributed/messages.h"
+#include "image/image_by_bricks.h"
 #include "podm/mesh_io.h"
 #include "runtime/virtual_threads.h"
 
@@ -131,6 +132,7 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
                        {"boundary_facets", part.boundary_facets},
                        {"store_cells", part.store_cells},
                        {"seed_vertices", part.seeds},
+                       {"image_bytes_read", part.image_bytes_read},
                        {"peak_rss_bytes", memory_of(spent[rank])},
                        {"phases_s", part.phases_s},
                        {"spent", part.spent},
@@ -141,6 +143,7 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
           {"machines", machines.num_machines()},
           {"carrier", run.command.ranks_in_process > 0 ? "in-process" : "mpi"},
           {"network", network_of(run.command)},
+          {"image", by_bricks(run.image) != nullptr ? "by bricks" : "whole"},
           {"initial_ratio", run.options.leaves.initial_ratio},
           {"imbalance", imbalance(parts)},
           {"rounds", rounds_of(parts, &PartOfRank::rounds)},

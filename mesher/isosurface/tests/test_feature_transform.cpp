@@ -264,6 +264,7 @@ TEST(FeatureTransform, RefusesMoreVoxelsThanItCanNumber) {
   LabelImage image;
   image.size = {65536, 65536, 1};
   image.spacing = {1, 1, 1};
+  image.voxels.resize(1);  // an image without any stays in its file
   EXPECT_THROW(FeatureTransform(image, 1), InputError);
 }
 

@@ -1,0 +1,32 @@
+// Images that no rank holds as a whole. The voxels stay in the file. Each rank reads a slab of it once, and
+// all ranks learn of each brick of 4^3 voxels its label, or that it has surface voxels: 2 bytes for 64
+// voxels. From this each rank makes the table of the feature transform, 8 bytes per brick, with exact bounds
+// of distances for all of the image (feature_transform.h). It reads the voxels of bricks near the isosurface
+// when a query first needs them (unread_bricks.h), so it holds those of its block, of the cover around it,
+// and of the zones that it gets later.
+//
+// No margin of a crop has to be proved. Each answer of the oracle depends on the table and on words of
+// bricks, and both are the same as those of the whole image.
+#pragma once
+
+#include <memory>
+
+#include "distributed/shared_value.h"
+#include "image/voxel_file.h"
+#include "podm/meshing_options.h"
+
+namespace podm {
+
+/// Returns true if runs with these options ask only for what an image by bricks has. Smoothed interfaces,
+/// sizes near interfaces, graded sizes, size images and a target number of elements need all voxels; logs
+/// have the hash of all.
+bool can_stay_in_file(const LabelSelection& selection, const MeshingOptions& options);
+
+/// Collective. Returns the image that a file has with this selection. The ranks of a process share it.
+/// `threads`: 0 for all cores. Throws RefusedByAll if the ranks have different files, or if the file or the
+/// selection is refused as by read_image().
+std::shared_ptr<const LabelImage> read_by_bricks(const std::shared_ptr<const VoxelFile>& file,
+                                                 const LabelSelection& selection, int threads,
+                                                 SharedValue<LabelImage>& shared, Communication& ranks);
+
+}  // namespace podm

@@ -1,0 +1,107 @@
+// Ranks that read an image by bricks know the same of it, and make the same mesh, as ranks that hold it.
+#include "distributed/read_by_bricks.h"
+
+#include <gtest/gtest.h>
+
+#include "distributed/image_digest.h"
+#include "distributed/in_process_ranks.h"
+#include "distributed/mesh_image_on_ranks.h"
+#include "image/foreground.h"
+#include "image/image_by_bricks.h"
+#include "tests/fault_of.h"
+#include "tests/images.h"
+#include "tests/scratch_folder.h"
+
+namespace podm::test {
+namespace {
+
+// Two balls far apart, one of two labels.
+LabelImage scene() {
+  return make_image({90, 41, 38}, {1, 1, 1.2}, 3, [](int i, int j, int k) {
+    if (std::hypot(i - 20, j - 20, 1.2 * (k - 17)) < 13) return i < 22 ? 1 : 2;
+    return std::hypot(i - 70, j - 19, 1.2 * (k - 20)) < 11 ? 3 : 0;
+  });
+}
+
+class ReadByBricks : public testing::TestWithParam<int> {
+ protected:
+  ReadByBricks() { write_nifti(scene(), path_); }
+
+  // Calls use(image, ranks) on each rank.
+  template <class Use>
+  void read(const LabelSelection& selection, const Use& use) const {
+    SharedValue<LabelImage> shared;
+    run_ranks({.num_ranks = GetParam(), .one_at_a_time = true}, [&](Communication& ranks) {
+      const std::shared_ptr<const VoxelFile> file = VoxelFile::open(path_);
+      ASSERT_NE(file, nullptr);
+      use(*read_by_bricks(file, selection, 1 + ranks.rank() % 2, shared, ranks), ranks);
+    });
+  }
+
+  const ScratchFolder folder_;
+  const std::string path_ = folder_ / "scene.nii";
+};
+
+TEST_P(ReadByBricks, FindsWhatTheWholeImageHas) {
+  LabelSelection merged, kept;
+  merged.merges.push_back({{10, 20}, "pair"});
+  kept.keep.emplace_back(20, 30);
+  for (const LabelSelection& selection : {LabelSelection{}, merged, kept}) {
+    const LabelImage whole = read_image(path_, selection, 1);
+    read(selection, [&](const LabelImage& image, Communication&) {
+      ASSERT_NE(by_bricks(image), nullptr);
+      EXPECT_EQ(image.size, whole.size);
+      EXPECT_EQ(image.voxel_to_ras, whole.voxel_to_ras);
+      ASSERT_EQ(image.labels.size(), whole.labels.size());
+      for (std::size_t i = 0; i < image.labels.size(); ++i) {
+        EXPECT_EQ(image.labels[i].value, whole.labels[i].value);
+        EXPECT_EQ(image.labels[i].name, whole.labels[i].name);
+      }
+      EXPECT_EQ(count_voxels(image, 1), count_voxels(whole, 1));
+      EXPECT_EQ(foreground_bounds(image).low, foreground_bounds(whole).low);
+      EXPECT_EQ(foreground_bounds(image).high, foreground_bounds(whole).high);
+      EXPECT_EQ(digest_of(image, 1), digest_of(whole, 2));
+    });
+  }
+}
+
+TEST_P(ReadByBricks, MakesTheMeshOfTheWholeImage) {
+  MeshingOptions options;
+  options.sizes.radius_mm = 3.5;
+  options.team.threads = 1;
+  const LabelImage whole = read_image(path_, {}, 1);
+  std::vector<std::uint64_t> hashes;
+  const auto mesh = [&](const LabelImage& image, Communication& ranks) {
+    const MeshingOnRanks made = mesh_image_on_ranks(image, options, ranks);
+    if (ranks.rank() > 0) return;
+    hashes.push_back(made.mesh_hash);
+    EXPECT_TRUE(made.report.guarantees.all_met());
+    EXPECT_EQ(made.parts[0].image_bytes_read > 0, by_bricks(image) != nullptr);
+  };
+  run_ranks({.num_ranks = GetParam(), .one_at_a_time = true},
+            [&](Communication& ranks) { mesh(whole, ranks); });
+  read({}, mesh);
+  ASSERT_EQ(hashes.size(), 2u);
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_P(ReadByBricks, RefusesWhatNoRankCanRead) {
+  LabelSelection absent;
+  absent.keep.emplace_back(77, 77);
+  EXPECT_NE(fault_of<InputError>([&] {
+              read(absent, [](const LabelImage&, Communication&) {});
+            }).find("label 77 is not in the image"),
+            std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, ReadByBricks, testing::Values(1, 2, 7));
+
+TEST(VoxelFile, IsNotForFilesThatMustBeReadAsAWhole) {
+  const ScratchFolder folder;
+  write_nifti(scene(), folder / "scene.nii.gz");
+  EXPECT_EQ(VoxelFile::open(folder / "scene.nii.gz"), nullptr);
+  EXPECT_EQ(VoxelFile::open("phantom:spheres@32"), nullptr);
+}
+
+}  // namespace
+}  // namespace podm::test
