@@ -87,7 +87,8 @@ def depends_on_machine(row, expression):
 
 def dirty_programs(row):
     """Returns the names of the programs that made the row from sources with uncommitted changes."""
-    programs = {name: (program or {}).get("build") or {} for name, program in (row.get("programs") or {}).items()}
+    programs = {name: program.get("build") or {} for name, program in (row.get("programs") or {}).items()
+                if isinstance(program, dict)}  # "none": the meshes were not verified
     sources = (row.get("environment") or {}).get("sources")
     programs["podm-bench"] = sources if isinstance(sources, dict) else {}
     dirty = [name for name, build in programs.items() if str(build.get("dirty")).lower() == "true"]

@@ -17,6 +17,9 @@ from .provenance import Provenance
 
 PEERS_OF_README = ("podm", "cgal", "cgal6", "tetgen", "gmsh")
 PHASES_OF_SLIVERS = ("perturb", "optimize")
+# The constants that mesher/runtime/cost_factor.cpp multiplies by a factor.
+SHARING = {"none": (1, "none"), "line_transfer": (100, "a line in {:g} ns"), "page_fault": (1, "a page in {:g} us")}
+ALGORITHMS_OF_SHARING = {"PODM": "podm", "PDR.PODM": "pdr-podm", "PODM at home": "podm-home"}
 
 
 def _lines(table):
@@ -137,6 +140,23 @@ def simulated_speedups(sources, folder):
     return _lines(speedups(scaling.weak_series(sources.frame((folder,)))))
 
 
+def sharing(sources, file):
+    """Speed-ups on 256 simulated cores over PODM on one, by the cost of a shared cache line or of a new page."""
+    rows = sources.frame((file,))
+    rows = rows[rows["status"] == "ok"].assign(rate=rows["cells"] / rows["seconds"],
+                                               factor=rows["asked.cost_factor"].fillna("none=0"))
+    lines = []
+    for factor, group in rows.groupby("factor"):
+        constant, times = factor.split("=")
+        unit, words = SHARING[constant]
+        rate = group.set_index(["algorithm", "cores"])["rate"]
+        lines.append({"order": (constant != "none", constant, float(times)),
+                      "cost": words.format(unit * float(times)),
+                      **{title: f"{rate[algorithm, 256] / rate['podm', 1]:.1f}" if (algorithm, 256) in rate
+                         else "not simulated" for title, algorithm in ALGORITHMS_OF_SHARING.items()}})
+    return _lines(pandas.DataFrame(sorted(lines, key=lambda line: line["order"])).drop(columns="order"))
+
+
 def verdicts(sources, file):
     """Claims of experiments, from a file of `podm-bench verdicts --json`."""
     found = experiment_verdicts.read_experiment_verdicts(sources.path(file))
@@ -153,7 +173,7 @@ def paper_claims(sources, *names):
 
 TABLES = {table.__name__: table
           for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks,
-                        simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
+                        sharing, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine. Their rows must come from a known machine.
 TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
          "slivers": Expression("phases_s")}

@@ -46,6 +46,19 @@ class Tables(unittest.TestCase):
         return next(cell for title, cell in zip(head, line)
                     if title.split(":")[0].split(",")[0] == algorithm and title.endswith(size))
 
+    def test_sharing_has_a_line_for_each_cost_with_its_own_base(self):
+        rows = [synthetic.row(algorithm, cores, executor="virtual", cells=1_000_000, phases_s={"refine": seconds},
+                              asked={"cost_factor": factor} if factor else {})
+                for factor, slower in ((None, 1), ("page_fault=4", 4), ("line_transfer=0.5", 2), ("line_transfer=8", 3))
+                for algorithm, cores, seconds in (("podm", 1, 100), ("podm", 256, 2 * slower),
+                                                  ("podm-home", 256, slower))]
+        head, *lines = self.lines("sharing", rows, "0.1.0/what/rows.jsonl")
+        self.assertEqual(head, ["cost", "PODM", "PDR.PODM", "PODM at home"])
+        self.assertEqual(lines, [["none", "50.0", "not simulated", "100.0"],
+                                 ["a line in 50 ns", "25.0", "not simulated", "50.0"],
+                                 ["a line in 800 ns", "16.7", "not simulated", "33.3"],
+                                 ["a page in 4 us", "12.5", "not simulated", "25.0"]])
+
     def slivers(self, topology="aaaa"):
         for threads, seconds in (1, 3.0), (2, 2.0):
             for repeat in (1, 2, 3):
