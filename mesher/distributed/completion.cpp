@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "distributed/cell_marks.h"
 #include "distributed/zone.h"
 #include "runtime/parallel_collect.h"
 #include "runtime/parallel_sort.h"
@@ -19,20 +20,14 @@ namespace {
 // Returns the cells of the two lists and their neighbours, each once.
 std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some, const std::vector<CellId>& more,
                            std::size_t threads) {
-  auto cells = parallel_collect<CellId>(some.size() + more.size(), threads,
-                                        [&](std::size_t begin, std::size_t end, std::vector<CellId>& found) {
-                                          for (std::size_t i = begin; i < end; ++i) {
-                                            const CellId c =
-                                                i < some.size() ? some[i] : more[i - some.size()];
-                                            if (!mesh.cell(c).is_alive()) continue;
-                                            found.push_back(c);
-                                            for (const FacetId mirror : mesh.cell(c).mirrors)
-                                              if (mirror != kNoFacet) found.push_back(cell_of(mirror));
-                                          }
-                                        });
-  parallel_sort(cells.begin(), cells.end(), threads);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
+  constexpr std::size_t kLength = 1 << 12;
+  CellMarks marks(mesh.cell_bound());
+  for (const auto* const list : {&some, &more})
+    parallel_for_ranges(list->size(), kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (const CellId c = (*list)[i]; mesh.cell(c).is_alive()) marks.mark_with_neighbors(c, mesh);
+    });
+  return marks.cells(threads);
 }
 
 // Returns those of the given cells (unset: of all cells) that have a vertex in the zone but may not be cells

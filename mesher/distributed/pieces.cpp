@@ -5,12 +5,12 @@
 #include <numeric>
 #include <tuple>
 
+#include "distributed/cell_marks.h"
 #include "distributed/messages.h"
 #include "geometry/point_hash.h"
 #include "podm/errors.h"
 #include "run/extract_mesh.h"
 #include "runtime/parallel_collect.h"
-#include "runtime/parallel_sort.h"
 #include "runtime/shared_word.h"
 
 namespace podm {
@@ -84,17 +84,11 @@ class PieceOfMesh {
   // its part of space, and their neighbours. If another rank reads such a cell, too, then the cell has
   // vertices of both parts, or a neighbour of it has: a cell and its neighbour share three vertices.
   void agree_on_centers() {
-    auto shared = parallel_collect<CellId>(
-        mesh_.cell_bound(), threads_, [&](std::size_t begin, std::size_t end, std::vector<CellId>& found) {
-          for (auto c = static_cast<CellId>(begin); c < end; ++c) {
-            if (!mesh_.cell(c).is_alive() || !is_mixed(c)) continue;
-            found.push_back(c);
-            for (const FacetId mirror : mesh_.cell(c).mirrors)
-              if (mirror != kNoFacet) found.push_back(cell_of(mirror));
-          }
-        });
-    parallel_sort(shared.begin(), shared.end(), threads_);
-    shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+    CellMarks marks(mesh_.cell_bound());
+    in_parallel(mesh_.cell_bound(), [&](CellId c) {
+      if (mesh_.cell(c).is_alive() && is_mixed(c)) marks.mark_with_neighbors(c, mesh_);
+    });
+    const std::vector<CellId> shared = marks.cells(threads_);
     in_parallel(shared.size(), [&](std::uint32_t i) { mesh_.make_canonical(shared[i]); });
   }
 

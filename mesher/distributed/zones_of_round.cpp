@@ -13,6 +13,9 @@ namespace {
 // The shift of blocks from round to round, in cubes. A larger shift requires more vertices of other ranks,
 // and thin blocks come to lie over each other. With a smaller one the deferred cells of a face lack room.
 constexpr int kCubesPerShift = 2;
+// Where blocks are shorter than this many cubes, all faces are shifted in one direction: too many cells would
+// wait at the ends of stripes.
+constexpr double kLeastStripe = 24;
 // With fewer deferred cells a cut is not worth the round that it may cost.
 constexpr std::uint64_t kCellsPerZone = 5000;
 // More than one zone per rank, so that the load can be balanced.
@@ -176,9 +179,28 @@ std::map<std::size_t, int> ranks_of(const std::map<std::size_t, ZoneSize>& zones
 
 }  // namespace
 
-int Zones::shifted_block(CubePlace at) const {
-  for (int& place : at) place = std::max(0, place - shift_);
-  return blocks_->of(at);
+// The stripes are as long as the mean block. Their ends lie elsewhere in each round.
+Zones::Zones(int round, CubeSet waiting, const Blocks& blocks, const Writers& writers)
+    : grid_(&waiting.grid()),
+      waiting_(std::move(waiting)),
+      blocks_(&blocks),
+      writers_(&writers),
+      shift_(kCubesPerShift * round) {
+  const double length = std::cbrt(grid_->num_cubes() / static_cast<double>(blocks.number()));
+  if (length < kLeastStripe) return;
+  stripe_ = 1 + static_cast<int>(length);
+  const std::array<int, kShiftedRounds> begins{stripe_ / 2, 2 * stripe_ / 3, stripe_ / 3};
+  first_stripe_ = begins.at(static_cast<std::size_t>(round - 1));
+}
+
+// The direction of a face depends on the place along the next axis, so that it is the same on both sides.
+int Zones::shifted_block(const CubePlace& at) const {
+  CubePlace from;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool is_upwards = stripe_ == 0 || (at[(axis + 1) % 3] + first_stripe_) / stripe_ % 2 == 0;
+    from[axis] = std::clamp(at[axis] + (is_upwards ? -shift_ : shift_), 0, grid_->size()[axis] - 1);
+  }
+  return blocks_->of(from);
 }
 
 int Zones::rank_of(const CubePlace& at) const {
@@ -196,11 +218,7 @@ CubeSet Zones::of(int rank) const {
       if (ranks_[i] == rank) zone.insert(cubes[i]);
     return zone;
   }
-  CubeRange range = blocks_->range_of(rank);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (range.low[axis] > 0) range.low[axis] += shift_;
-    range.high[axis] = std::min(grid_->size()[axis], range.high[axis] + shift_);
-  }
+  const CubeRange range = grid_->grown(blocks_->range_of(rank), shift_);
   if (are_blocks()) {
     zone.insert(range);
   } else {
@@ -228,7 +246,7 @@ Zones zones_of_round(int round, const Blocks& blocks, CubeSet waiting,
                      const std::vector<CubeCount>& num_cells, const Writers& writers,
                      std::vector<std::uint64_t>& load) {
   const CubeGrid& grid = waiting.grid();
-  if (round <= kShiftedRounds) return {std::move(waiting), kCubesPerShift * round, blocks, writers};
+  if (round <= kShiftedRounds) return {round, std::move(waiting), blocks, writers};
   CubeNumbers numbered(std::move(waiting));
   WaitingCubes cubes = connected_zones(numbered, num_cells);
   const bool has_cuts = round <= kLastRoundWithCuts && cut_large(cubes, grid, load.size());

@@ -1,11 +1,12 @@
 // The assignment of zones to ranks in the rounds after the first.
 //
 // Deferred cells lie along the faces of blocks, where the zones of round 0 ended. In rounds 1 to
-// kShiftedRounds the zones are the blocks, shifted each time by the same number of cubes along each axis. The
-// faces of a shifted block lie inside blocks. The deferred cells of a face wait again only where the face
-// meets a shifted face: along lines after round 1, at points after round 2, and hardly anywhere after round
-// 3. All ranks are busy in these rounds. A zone does not include cubes where no cell waits and which another
-// rank wrote last, so that they need not be sent.
+// kShiftedRounds the zones are the blocks with their faces shifted, farther from round to round, and, if
+// blocks are long, by stripes in one direction and in the other: the two blocks share the cells of the face.
+// The shifted faces lie inside blocks. The deferred cells of a face wait again only where the face meets
+// another shifted face, or where the direction changes: along lines after round 1, at points after round 2,
+// and hardly anywhere after round 3. All ranks are busy in these rounds. A zone does not include cubes where
+// no cell waits and which another rank wrote last, so that they need not be sent.
 //
 // In later rounds zones are the connected parts of the cubes around the deferred cells. Up to round
 // kLastRoundWithCuts parts with many deferred cells are cut anew, into boxes, at places where few of these
@@ -38,14 +39,9 @@ class Zones {
  public:
   /// The blocks, the zones of round 0.
   Zones(const CubeGrid& grid, const Blocks& blocks) : grid_(&grid), blocks_(&blocks) {}
-  /// The blocks, shifted by this number of cubes. A zone includes the cubes of `waiting` and those that its
-  /// rank wrote last. Keeps the references.
-  Zones(CubeSet waiting, int shift, const Blocks& blocks, const Writers& writers)
-      : grid_(&waiting.grid()),
-        waiting_(std::move(waiting)),
-        blocks_(&blocks),
-        writers_(&writers),
-        shift_(shift) {}
+  /// The shifted blocks of one of the rounds 1 to kShiftedRounds. A zone includes cubes of `waiting`, and
+  /// those that its rank wrote last. Keeps the references.
+  Zones(int round, CubeSet waiting, const Blocks& blocks, const Writers& writers);
   /// Zones of the numbered cubes alone, with the rank of each.
   Zones(CubeNumbers waiting, std::vector<int> ranks, bool are_connected)
       : grid_(&waiting.cubes().grid()),
@@ -70,13 +66,15 @@ class Zones {
   int rank_of_waiting(const CubePlace& at) const {
     return numbered_ ? ranks_[(*numbered_)[grid_->id(at)]] : shifted_block(at);
   }
-  int shifted_block(CubePlace at) const;
+  int shifted_block(const CubePlace& at) const;
 
   const CubeGrid* grid_;
   std::optional<CubeSet> waiting_;
   const Blocks* blocks_ = nullptr;
   const Writers* writers_ = nullptr;
-  int shift_ = 0;
+  int shift_ = 0;         // cubes
+  int stripe_ = 0;        // length of the stripes of one direction, in cubes; 0: there is one direction
+  int first_stripe_ = 0;  // place in its stripe where the grid begins
   std::optional<CubeNumbers> numbered_;
   std::vector<int> ranks_;  // by number
   bool are_connected_ = false;
