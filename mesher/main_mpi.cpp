@@ -71,6 +71,13 @@ int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThre
   return cli::mesh_on_ranks(std::get<cli::MeshCommand>(command), ranks, signals, shared);
 }
 
+// Ends all ranks by the exception that is being handled. A rank without memory to report it terminates, which
+// also ends them: a rank that left its communication would wait for the others.
+[[noreturn]] void end_all_ranks(const podm::Communication& ranks) noexcept {
+  const podm::RankFailure failure = podm::current_rank_failure(ranks.rank(), ranks.size());
+  podm::abort_all_ranks(complain(failure.exception));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -85,8 +92,7 @@ int main(int argc, char** argv) try {
     if (ranks->rank() == 0) fmt::print(stderr, "podm-mpi: {}\n", error.what());
     return kBadInput;
   } catch (...) {
-    const podm::RankFailure failure = podm::current_rank_failure(ranks->rank(), ranks->size());
-    podm::abort_all_ranks(complain(failure.exception));
+    end_all_ranks(*ranks);
   }
 } catch (const std::exception& error) {
   fmt::print(stderr, "podm-mpi: {}\n", error.what());

@@ -9,9 +9,12 @@
 #include <string_view>
 
 #include "algorithms/check_options.h"
+#include "algorithms/memory_model.h"
 #include "distributed/collective_errors.h"
 #include "distributed/image_digest.h"
+#include "distributed/memory_of_ranks.h"
 #include "distributed/pieces.h"
+#include "distributed/rank_failure.h"
 #include "distributed/report_of_ranks.h"
 #include "image/image_by_bricks.h"
 #include "io/sha256.h"
@@ -20,11 +23,14 @@
 #include "run/extract_mesh.h"
 #include "run/measure_quality.h"
 #include "run/phases_of_run.h"
+#include "runtime/system_memory.h"
 #include "runtime/virtual_threads.h"
 
 namespace podm {
 
 namespace {
+
+constexpr double kBytesPerGib = 1 << 30;
 
 void refuse(bool is_asked, const std::string& what) {
   if (is_asked) throw InputError(what + " is not available on ranks");
@@ -157,11 +163,12 @@ class RunOnRank {
     MeshingReport own;
     phases_.transform(own, [&](auto weights) { return isosurface(std::move(weights)); });
     spending_.end("transform");
-    refine(own);
-    phases_.report_refinement(refined_->refinement, own);
-    phases_.extract([&](Space space) { result.piece = piece(space, own.guarantees.facet_vertices); }, own);
-    spending_.end("extract");
-    phases_.finish(result.piece.mesh, own);
+    try {
+      make_piece(own, result.piece);
+    } catch (const std::bad_alloc&) {
+      refined_.reset();
+      throw lack_of_memory();
+    }
     result.mesh_hash = hash_of_whole(result.piece.mesh);
     result.cubes = std::move(refined_->cubes);
     spending_.end("measure");
@@ -177,12 +184,50 @@ class RunOnRank {
                     .image_bytes_read = phases_.isosurface().transform().bytes_read()};
     std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
     phases_.promise_dihedral_bounds(result.piece.mesh, result.report);
+    if (result.report.stop_reason == StopReason::kMemoryLimit) warn_of_memory(result.report);
     result.report.guarantees.missing_labels =
         missing_labels(image_, result.report.cells_of_label, phases_.loop_threads());
     return result;
   }
 
  private:
+  void make_piece(MeshingReport& own, MeshPiece& made) {
+    refine(own);
+    phases_.report_refinement(refined_->refinement, own);
+    phases_.extract([&](Space space) { made = piece(space, own.guarantees.facet_vertices); }, own);
+    spending_.end("extract");
+    phases_.finish(made.mesh, own);
+  }
+
+  std::uint64_t bytes_for_part() const {
+    return std::min(memory_of_run(options_.limits), address_space_bytes());
+  }
+
+  // If the prediction is that these ranks would do, it is wrong by an unknown factor. Twice as many have
+  // parts of half the size.
+  std::uint64_t num_ranks_that_would_do(std::uint64_t bytes) const {
+    const auto num_ranks = static_cast<std::uint64_t>(ranks_.size());
+    const std::uint64_t predicted = num_ranks_for(phases_.expected_cells(), static_cast<double>(bytes));
+    return predicted > num_ranks ? predicted : 2 * num_ranks;
+  }
+
+  OutOfMemory lack_of_memory() const {
+    const std::uint64_t bytes = bytes_for_part(), num_ranks = num_ranks_that_would_do(bytes);
+    const double gib = static_cast<double>(bytes) / kBytesPerGib,
+                 more = static_cast<double>(num_ranks) / ranks_.size();
+    return OutOfMemory(
+        fmt::format("out of memory: its part of the mesh, about {:.2g} cells, needs about {:.3g} GiB and has "
+                    "{:.3g}; {} or more ranks of this memory would do",
+                    phases_.expected_cells() / ranks_.size(), gib * more, gib, num_ranks));
+  }
+
+  void warn_of_memory(MeshingReport& report) {
+    std::array<std::uint64_t, 1> num_ranks{num_ranks_that_would_do(bytes_for_part())};
+    ranks_.maximum(num_ranks);
+    report.warnings.push_back(
+        fmt::format("memory ended the run; {} or more ranks of this memory would do", num_ranks[0]));
+  }
+
   std::shared_ptr<const Isosurface> isosurface(std::shared_ptr<const VoxelWeights> weights) {
     const auto make = [&] {
       return std::make_shared<const Isosurface>(image_, phases_.loop_threads(), std::move(weights));

@@ -52,10 +52,11 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// memory, which each rank chooses. Ranks share the rest of max_elements in proportion to the cells that they
 /// begin a round with. A rank that exceeds its share ends the run. Throws RefusedByAll
 /// (distributed/collective_errors.h) if images or options differ between ranks, or if options are bad or not
-/// supported on ranks. If memory runs out between rounds, that rank throws std::bad_alloc, and the caller
-/// must end the other ranks. Ranks of one process may share the isosurface if they have the same image;
-/// otherwise each rank makes its own. Checkpoints need two ranks or more, and a radius; one rank may resume
-/// those of more. Throws RefusedByAll on faults of their files.
+/// supported on ranks. If memory runs out between rounds, that rank throws OutOfMemory
+/// (distributed/rank_failure.h), which names a number of ranks that would do, and the caller must end the
+/// other ranks. Ranks of one process may share the isosurface if they have the same image; otherwise each
+/// rank makes its own. Checkpoints need two ranks or more, and a radius; one rank may resume those of more.
+/// Throws RefusedByAll on faults of their files.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
                                    std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr,

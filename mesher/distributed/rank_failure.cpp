@@ -2,28 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <new>
 #include <stdexcept>
 
 #include "podm/errors.h"
 
 namespace podm {
-namespace {
 
-// An out-of-memory error that allocates no memory itself.
-class RankOutOfMemory : public std::bad_alloc {
- public:
-  RankOutOfMemory(int rank, int size) {
-    *fmt::format_to_n(what_.data(), what_.size() - 1, "rank {} of {}: out of memory", rank, size).out = '\0';
-  }
-  const char* what() const noexcept override { return what_.data(); }
-
- private:
-  std::array<char, 64> what_;
-};
-
-}  // namespace
+OutOfMemory::OutOfMemory(int rank, int size, std::string_view cause) {
+  fmt::format_to_n(what_.data(), what_.size() - 1, "rank {} of {}: {}", rank, size, cause);
+}
 
 RankFailure current_rank_failure(int rank, int size) {
   const auto as = [&](auto error, const char* cause) {
@@ -36,8 +23,10 @@ RankFailure current_rank_failure(int rank, int size) {
     return as(error, error.what());
   } catch (const InternalError& error) {
     return as(error, error.what());
+  } catch (const OutOfMemory& error) {
+    return {rank, error.what(), std::make_exception_ptr(OutOfMemory(rank, size, error.what()))};
   } catch (const std::bad_alloc&) {
-    return {rank, "out of memory", std::make_exception_ptr(RankOutOfMemory(rank, size))};
+    return {rank, "out of memory", std::make_exception_ptr(OutOfMemory(rank, size, "out of memory"))};
   } catch (const std::exception& error) {
     return as(std::runtime_error(""), error.what());
   } catch (...) {

@@ -1,10 +1,25 @@
 // Conversion of an exception that a rank throws.
 #pragma once
 
+#include <array>
 #include <exception>
+#include <new>
 #include <string>
+#include <string_view>
 
 namespace podm {
+
+/// A lack of memory with a text, which is cut off if it is long. It allocates no memory itself.
+class OutOfMemory : public std::bad_alloc {
+ public:
+  explicit OutOfMemory(std::string_view what) { what.copy(what_.data(), what_.size() - 1); }
+  /// The lack of memory of a rank.
+  OutOfMemory(int rank, int size, std::string_view cause);
+  const char* what() const noexcept override { return what_.data(); }
+
+ private:
+  std::array<char, 320> what_{};
+};
 
 struct RankFailure {
   int rank;

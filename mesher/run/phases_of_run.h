@@ -36,6 +36,8 @@ class PhasesOfRun {
   const TeamOfRun& team() const { return team_; }
   /// The sampling distance of surfaces, mm, unless a target number of elements determines it.
   double delta_mm() const { return expected_.delta_mm; }
+  /// The number of cells that are expected in all processes together.
+  double expected_cells() const { return expected_.cells; }
   int loop_threads() const { return loop_threads_; }
 
   /// Calls refine() with the problem of these sizes, in which delta is not 0. Only the last call is reported.

@@ -687,6 +687,23 @@ class EarlyEnds(OnRanks):
                 return process, ranks
         self.fail(f"no refinement: exit {process.wait()}")
 
+    def test_a_lack_of_memory_of_one_rank_ends_all(self):
+        """Within the limit of address space a rank makes less than its part, or nothing."""
+        mesh = [MPI_PROGRAM, "mesh", *ENDLESS, "-o", self.out, "--record", self.runs, "--quiet"]
+        ends = set()
+        for kib in few((250_000, 350_000, 500_000, 700_000), 2):
+            self.out.unlink(missing_ok=True)
+            process = self.mpirun("-n", 1, *mesh, ":", "-n", 1, "sh", "-c", f'ulimit -v {kib}; exec "$0" "$@"', *mesh)
+            ends.add(process.returncode)
+            if process.returncode == 1:
+                self.assert_ended_early(process, "memory limit")
+                self.assertRegex(process.stderr, "warning: memory ended the run; [0-9]+ or more ranks")
+            else:
+                self.assert_exit(process, 3)
+                self.assertRegex(process.stderr, "rank 1 of 2: out of memory(: .* [0-9]+ or more ranks)?")
+                self.assertFalse(self.out.exists())
+        self.assertIn(3, ends)
+
     def wait_for_end(self, process):
         """Waits until the process has ended, also if no parent has collected its status."""
         stat = pathlib.Path(f"/proc/{process}/stat")

@@ -10,6 +10,7 @@
 #include "algorithms/team_size.h"
 #include "cli/commands/labelled_image.h"
 #include "cli/processes/process_memory.h"
+#include "distributed/memory_of_ranks.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
 #include "sizing/make_size_grid.h"
@@ -44,17 +45,22 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
   const Estimate expected = of_image(image_path, [&] { return estimate(image, options); });
-  double memory_bytes = expected.memory_bytes;
-  if (std::isfinite(memory_bytes))
-    memory_bytes -= expected.cells * kPeakBytesPerMeshCell * (num_ranks - 1) / num_ranks;
+  const double mesh_bytes = expected.cells * kPeakBytesPerMeshCell,
+               others = expected.memory_bytes - mesh_bytes;
+  const double memory_bytes = std::isfinite(mesh_bytes) ? others + mesh_bytes / num_ranks : mesh_bytes;
+  const double left = static_cast<double>(limit_bytes) - others;
+  const std::string more_ranks =
+      num_ranks > 1 && left > 0
+          ? fmt::format(", or {} or more ranks of this memory", num_ranks_for(expected.cells, left))
+          : "";
   const double most_cells = options.limits.max_elements > 0 ? static_cast<double>(options.limits.max_elements)
                                                             : std::numeric_limits<double>::infinity();
   if (memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
         "{}: these options need about {:.2g} cells and {:.3g} GiB of memory{}; the limit is {:.3g} GiB; "
-        "use a larger radius or delta, or {}",
+        "use a larger radius or delta, or {}{}",
         image_path, expected.cells, memory_bytes / kBytesPerGib, num_ranks > 1 ? " per rank" : "",
-        static_cast<double>(limit_bytes) / kBytesPerGib, spelled("max-memory-gib")));
+        static_cast<double>(limit_bytes) / kBytesPerGib, spelled("max-memory-gib"), more_ranks));
   const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells) / num_ranks;
   if (stored_cells > static_cast<double>(kMostStoredCells))
     throw InputError(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <regex>
 
 #include "distributed/collective_errors.h"
 #include "distributed/in_process_ranks.h"
@@ -197,6 +198,22 @@ TEST(RanksThatDiffer, AreRefusedByAllWhereLeavesDoNotFitInTheMemoryOfOne) {
               mesh_image_on_ranks(image, options, ranks);
             }).find("rank 1 of 3: a leaf size of 0.3 mm gives"),
             std::string::npos);
+}
+
+// The seeds take more than the store has.
+TEST(RanksWithoutMemory, NameTheNumberOfRanksThatWouldDo) {
+  MeshingOptions options = options_with_radius(0.4);
+  options.limits.max_memory_bytes = 1 << 20;
+  const std::string fault = fault_of<std::bad_alloc>([&] {
+    run_ranks({.num_ranks = 2},
+              [&](Communication& ranks) { mesh_image_on_ranks(ball(24, 9), options, ranks); });
+  });
+  std::smatch number;
+  ASSERT_TRUE(std::regex_search(
+      fault, number, std::regex("^rank [01] of 2: out of memory: .* ([0-9]+) or more ranks of this memory")))
+      << fault;
+  EXPECT_GT(std::stoi(number[1]), 10) << fault;
+  EXPECT_LT(std::stoi(number[1]), 1000) << fault;
 }
 
 TEST(DoCollectively, NamesTheRankUnlessAllHaveTheSameError) {
