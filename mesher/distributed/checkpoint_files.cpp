@@ -149,8 +149,15 @@ std::vector<LearntVertex> read_checkpoint_piece(const std::string& path, const C
   const std::string bytes = bytes_of_file(path);
   if (bytes.size() != piece.bytes || sha256_of(bytes) != piece.sha256)
     refuse(path, "it has changed since it was written: its SHA-256 differs");
-  if (!bytes.starts_with(kPieceMagic) || bytes.size() != kHeadBytes + piece.vertices * kVertexBytes)
+  if (!bytes.starts_with(kPieceMagic) || bytes.size() < kHeadBytes ||
+      (bytes.size() - kHeadBytes) % kVertexBytes != 0)
     refuse(path, "it is no piece of a checkpoint");
+  std::uint64_t count = 0;
+  std::memcpy(&count, bytes.data() + kPieceMagic.size(), sizeof count);
+  if (const std::size_t in_file = (bytes.size() - kHeadBytes) / kVertexBytes;
+      count != in_file || piece.vertices != in_file)
+    refuse(path,
+           fmt::format("it has {} vertices, not {}", in_file, count != in_file ? count : piece.vertices));
   std::vector<LearntVertex> vertices(piece.vertices);
   const char* const points = bytes.data() + kHeadBytes;
   const char* const kinds = points + piece.vertices * 3 * sizeof(double);

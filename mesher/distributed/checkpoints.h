@@ -30,6 +30,8 @@ class Checkpoints {
   Checkpoints(const CheckpointOptions& options, const std::vector<Fact>& facts, Communication& ranks);
 
   bool is_resumed() const { return last_.has_value(); }
+  /// The checkpoint that is resumed, if any.
+  const std::optional<CheckpointText>& resumed() const { return last_; }
   /// Collective. Returns true, on all ranks, if the time since the last checkpoint is over on any rank.
   bool is_due() const;
   /// Collective. Writes this rank's vertices after one more round. Throws RefusedByAll if any rank cannot

@@ -171,6 +171,8 @@ class RunOnRank {
     }
     result.mesh_hash = hash_of_whole(result.piece.mesh);
     result.cubes = std::move(refined_->cubes);
+    if (checkpoints_ && checkpoints_->is_resumed())
+      result.resumed = ResumedFrom{checkpoints_->resumed()->rounds, checkpoints_->resumed()->pieces.size()};
     spending_.end("measure");
     PartOfRank part{.cells = result.piece.mesh.cells.size(),
                     .boundary_facets = result.piece.mesh.facets.size(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ struct PartOfRank {
   std::uint64_t image_bytes_read = 0;
 };
 
+/// The checkpoint with which a run began.
+struct ResumedFrom {
+  std::uint64_t rounds = 0;  ///< carried out before, in all runs
+  std::uint64_t ranks = 0;   ///< that wrote it
+};
+
 struct MeshingOnRanks {
   MeshPiece piece;              ///< this rank's piece
   std::uint64_t mesh_hash = 0;  ///< mesh_hash() of the whole mesh, the same on all ranks
@@ -39,6 +46,7 @@ struct MeshingOnRanks {
   /// the seconds of single trial meshes are those of this rank.
   MeshingReport report;
   std::vector<PartOfRank> parts;  ///< by rank
+  std::optional<ResumedFrom> resumed;
 };
 
 using SharedIsosurface = SharedValue<Isosurface>;

@@ -589,6 +589,7 @@ class Resumed(OnRanks):
     def begin(self, *arguments):
         process = self.saving(2, "--max-elements", 6000, *arguments)
         self.assert_exit(process, 1)
+        self.assertIsNone(self.last_record()["ranks"]["resumed"])
         self.assertIn("checkpoint.txt", {path.name for path in self.saved.iterdir()})
 
     def assert_refuses(self, process, *words):
@@ -602,6 +603,7 @@ class Resumed(OnRanks):
             with self.subTest(ranks=number):
                 self.assert_exit(self.saving(number, resume=True), 0)
                 self.assertEqual(self.last_record()["stop_reason"], "complete")
+                self.assertEqual(self.last_record()["ranks"]["resumed"], {"rounds": 1, "ranks": 2})
                 self.assert_verifies(self.out, "--radius", 3, "--image", self.image)
                 self.begin()
 

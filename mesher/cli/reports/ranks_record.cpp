@@ -220,10 +220,18 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
   Json record = ranks_of(result.parts, spent, machines, run);
+  if (const auto& from = result.resumed) {
+    record["resumed"] = {{"rounds", from->rounds}, {"ranks", from->ranks}};
+  } else {
+    record["resumed"] = nullptr;
+  }
   record["mesh_hash"] = mesh_hash_text(result.mesh_hash);
   run.ranks = std::make_shared<const Json>(std::move(record));
   run.ranks_text = text_of(result.parts, spent, machines, result.report.algorithm) +
                    fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
+  if (const auto& from = result.resumed)
+    run.ranks_text +=
+        fmt::format("resumed    a checkpoint of {} ranks, after {} rounds\n", from->ranks, from->rounds);
 }
 
 }  // namespace cli

@@ -99,6 +99,10 @@ TEST_F(CheckpointFiles, PiecesAreReadAsWrittenOrRefused) {
   }
   EXPECT_THAT(fault_of<InputError>([&] { read_checkpoint_piece(folder_ / "none", piece); }),
               HasSubstr("No such file"));
+  CheckpointPiece another = write_checkpoint_piece(path, vertices);
+  ++another.vertices;
+  EXPECT_THAT(fault_of<InputError>([&] { read_checkpoint_piece(path, another); }),
+              HasSubstr("it has 5 vertices, not 6"));
 }
 
 TEST_F(CheckpointFiles, AnyNumberOfRanksReadsEveryVertexOnce) {
