@@ -8,8 +8,8 @@
 
 namespace podm {
 
-/// Throws InputError unless the path is .pvtu or .xdmf, the formats that ranks write together, and this rank
-/// can write there.
+/// Throws InputError unless the path is .pvtu, .xdmf or .vtkhdf, the formats that ranks write together, and
+/// this rank can write there.
 void check_pieces_path(const std::string& path);
 
 /// Writes the format of the path's extension. Collective. Throws RefusedByAll
@@ -22,9 +22,14 @@ void write_pieces(const MeshPiece& piece, const std::string& path, Communication
 /// always names all pieces of one mesh. Collective, and throws as write_pieces() does.
 void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
-/// Writes x.xdmf and x.h5 (io/write_xdmf.h). The ranks append their rows one after the other to a temporary
-/// file, which gets its name when it is complete. Collective, and throws as write_pieces() does.
+/// Writes x.xdmf and x.h5 (io/write_xdmf.h). Rank 0 makes a temporary file of arrays without values. All
+/// ranks write their rows at once, without the HDF5 library, which would need a version for MPI. The file
+/// gets its name when it is complete. Collective, and throws as write_pieces() does.
 void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& ranks);
+
+/// Writes x.vtkhdf and x_facets.vtkhdf (io/write_vtkhdf.h), all ranks at once, as write_xdmf() does.
+/// Collective, and throws as write_pieces() does.
+void write_vtkhdf(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
 /// Writes one closed surface per label, as write_surfaces() of podm/mesh_io.h does on one machine. All ranks
 /// write to each file at once. The files get their names together when they are complete. Collective. Throws

@@ -143,8 +143,10 @@ class SurfaceFiles {
     const std::uint64_t facets_at = head.size() + size.vertices * bytes_per_vertex(format_) +
                                     part.share_of_facets.before * bytes_per_facet(format_);
     const auto write_own = [&] {
-      if (!part.vertices.empty()) write_at(file, path, vertices_at, part.vertices);
-      if (!part.facets.empty()) write_at(file, path, facets_at, part.facets);
+      SharedFile own(file, path);
+      own.write(vertices_at, part.vertices);
+      own.write(facets_at, part.facets);
+      own.finish();
     };
     do_collectively(write_own, ranks_);
   }

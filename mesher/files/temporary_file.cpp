@@ -44,25 +44,6 @@ void fail_to_write(const std::string& path, int error_number) {
   throw InputError(fmt::format("cannot write {}: {}", path, std::generic_category().message(error_number)));
 }
 
-void write_at(const std::string& file, const std::string& path, std::uint64_t offset,
-              std::string_view bytes) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) fail_to_write(path, errno);
-  int error_number = 0;
-  while (!bytes.empty() && error_number == 0) {
-    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0) {
-      error_number = errno == EINTR ? 0 : errno;
-      continue;
-    }
-    offset += static_cast<std::uint64_t>(written);
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (error_number == 0) error_number = sync_error(descriptor);
-  ::close(descriptor);
-  if (error_number != 0) fail_to_write(path, error_number);
-}
-
 TemporaryFile::TemporaryFile(const std::string& path)
     : path_(path), target_(resolve_target(path)), temporary_(make_temporary(target_, make_file)) {
   if (temporary_.descriptor < 0) fail_to_write(path_, temporary_.error_number);
@@ -129,6 +110,27 @@ void TemporaryFile::sync_folder() const {
   const int error_number = sync_error(descriptor);
   ::close(descriptor);
   if (error_number != 0) fail_to_write(path_, error_number);
+}
+
+SharedFile::SharedFile(const std::string& file, const std::string& path)
+    : path_(path), descriptor_(::open(file.c_str(), O_WRONLY | O_CLOEXEC)) {
+  if (descriptor_ < 0) fail_to_write(path, errno);
+}
+
+SharedFile::~SharedFile() { ::close(descriptor_); }
+
+void SharedFile::write(std::uint64_t offset, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_to_write(path_, errno);
+    offset += static_cast<std::uint64_t>(written);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void SharedFile::finish() {
+  if (const int error_number = sync_error(descriptor_); error_number != 0) fail_to_write(path_, error_number);
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& path)

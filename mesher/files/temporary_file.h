@@ -16,10 +16,6 @@ namespace podm {
 /// Throws InputError: "cannot write PATH: " and the system's message.
 [[noreturn]] void fail_to_write(const std::string& path, int error_number);
 
-/// Writes the bytes to the disk, at an offset of the existing file `file`, which another process may have
-/// made. Reports failure through fail_to_write(path).
-void write_at(const std::string& file, const std::string& path, std::uint64_t offset, std::string_view bytes);
-
 class TemporaryFile {
  public:
   /// Makes the file beside `path`. Every member reports failure through fail_to_write().
@@ -48,6 +44,25 @@ class TemporaryFile {
   std::string target_;   // path_ with symbolic links followed: a link is kept, its target replaced
   Temporary temporary_;  // without a path once published
   bool is_finished_ = false;
+};
+
+/// A file that another process may have made, and that several processes write at once, each at its own
+/// offsets.
+class SharedFile {
+ public:
+  /// Opens the existing file `file`. Every member reports failure through fail_to_write(path).
+  SharedFile(const std::string& file, const std::string& path);
+  ~SharedFile();
+  SharedFile(const SharedFile&) = delete;
+  SharedFile& operator=(const SharedFile&) = delete;
+
+  void write(std::uint64_t offset, std::string_view bytes);
+  /// Writes the bytes to the disk. Nothing may be written afterwards.
+  void finish();
+
+ private:
+  const std::string path_;
+  const int descriptor_;
 };
 
 /// A folder beside a file. It is removed with its contents whenever a temporary file of that file would be.

@@ -1,13 +1,17 @@
-// HDF5 files of datasets whose sizes are known at creation. Each writer holds some of the rows.
+// HDF5 files of datasets whose sizes and places are known at creation. The library makes the file. Afterwards
+// any number of processes write rows of its datasets at once, without the library (io/shared_rows.h).
 #pragma once
 
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "io/shared_rows.h"
 
 namespace podm {
 
@@ -31,57 +35,51 @@ class Hdf5Handle {
 /// An HDF5 file. Every member throws InputError "cannot write PATH: " and the reason.
 class Hdf5File {
  public:
-  enum class Mode { kMakeNew, kAddTo };
-  /// `path` must exist; its content is replaced or extended. Messages contain `shown_path`.
-  Hdf5File(const std::string& path, const std::string& shown_path, Mode mode);
+  /// `path` must exist; its content is replaced. Messages contain `shown_path`.
+  Hdf5File(const std::string& path, const std::string& shown_path);
 
-  /// Allocates a dataset with rows of `num_columns` numbers (0: one number per row, in one dimension). The
-  /// values are written later.
-  void make_dataset(const std::string& name, hid_t type, std::uint64_t num_rows, std::uint64_t num_columns);
+  /// Allocates a dataset with rows of `num_columns` numbers (0: one number per row, in one dimension).
+  /// Returns its place in the file. The values are written later.
+  RowsInFile make_dataset(const std::string& name, hid_t type, std::uint64_t num_rows,
+                          std::uint64_t num_columns);
   void write_strings(const std::string& name, const std::vector<std::string>& texts);
+  /// Writes texts of variable length without a declared character set, which is the only kind that VTK reads.
+  void write_texts_for_vtk(const std::string& name, const std::vector<std::string>& texts);
   void make_group(const std::string& name);
+  void write_attribute(const std::string& group, const std::string& name, const std::string& text);
+  void write_attribute(const std::string& group, const std::string& name,
+                       std::array<std::int64_t, 2> numbers);
 
-  /// Writes rows [first_row, first_row + num_rows) of a dataset. `value_at(row, column)` counts rows from 0.
+  /// Makes a dataset as make_dataset() does, with the values value_at(row, column). It is a small one.
   template <class Value, class ValueAt>
-  void write_rows(const std::string& name, std::uint64_t first_row, std::uint64_t num_rows, ValueAt value_at);
+  void write_numbers(const std::string& name, std::uint64_t num_rows, std::uint64_t num_columns,
+                     const ValueAt& value_at);
 
   /// Flushes everything to the system. No write may follow.
   void close();
 
  private:
-  struct Dataset {
-    Hdf5Handle dataset, space;
-    std::uint64_t num_columns;
-    int rank;
-  };
-  Dataset open(const std::string& name) const;
-  void write_block(const Dataset& to, std::uint64_t first_row, std::uint64_t num_rows, hid_t type,
-                   const void* values) const;
+  void write_attribute(const std::string& group, const std::string& name, hid_t type, hid_t space,
+                       const void* value);
+  void write_all(const std::string& name, hid_t type, const void* values) const;
   hid_t check(hid_t result) const;
 
   std::string path_;
   Hdf5Handle file_;
 };
 
-inline hid_t hdf5_type(double) { return H5T_NATIVE_DOUBLE; }
-inline hid_t hdf5_type(std::int64_t) { return H5T_NATIVE_INT64; }
-inline hid_t hdf5_type(std::int32_t) { return H5T_NATIVE_INT32; }
-inline hid_t hdf5_type(std::uint32_t) { return H5T_NATIVE_UINT32; }
+inline hid_t hdf5_type(std::int64_t) { return H5T_STD_I64LE; }
+inline hid_t hdf5_type(std::uint32_t) { return H5T_STD_U32LE; }
 
 template <class Value, class ValueAt>
-void Hdf5File::write_rows(const std::string& name, std::uint64_t first_row, std::uint64_t num_rows,
-                          ValueAt value_at) {
-  constexpr std::uint64_t kBlockRows = 1 << 16;
-  const Dataset to = open(name);
-  std::vector<Value> block;
-  for (std::uint64_t begin = 0; begin < num_rows; begin += kBlockRows) {
-    const std::uint64_t end = std::min(begin + kBlockRows, num_rows);
-    block.clear();
-    for (std::uint64_t row = begin; row < end; ++row)
-      for (std::uint64_t column = 0; column < to.num_columns; ++column)
-        block.push_back(static_cast<Value>(value_at(row, column)));
-    write_block(to, first_row + begin, end - begin, hdf5_type(Value()), block.data());
-  }
+void Hdf5File::write_numbers(const std::string& name, std::uint64_t num_rows, std::uint64_t num_columns,
+                             const ValueAt& value_at) {
+  std::vector<Value> values;
+  for (std::uint64_t row = 0; row < num_rows; ++row)
+    for (std::uint64_t column = 0; column < std::max<std::uint64_t>(1, num_columns); ++column)
+      values.push_back(static_cast<Value>(value_at(row, column)));
+  make_dataset(name, hdf5_type(Value()), num_rows, num_columns);
+  write_all(name, hdf5_type(Value()), values.data());
 }
 
 }  // namespace podm

@@ -36,11 +36,11 @@ class WrittenVertices {
   }
 
   // Writes each range of consecutive numbers at once; in most cases there is only one range.
-  void write(Hdf5File& file) const {
+  void write(SharedFile& file, const RowsInFile& points) const {
     for (std::size_t begin = 0, end = 0; begin < vertices_.size(); begin = end) {
       const std::uint64_t first = id_of(vertices_[begin]);
       for (end = begin + 1; end < vertices_.size() && id_of(vertices_[end]) == first + (end - begin);) ++end;
-      file.write_rows<double>("points", first, end - begin, [&](std::uint64_t row, std::uint64_t axis) {
+      write_rows<double>(file, points, first, end - begin, [&](std::uint64_t row, std::uint64_t axis) {
         return part_.mesh.vertices[vertices_[begin + row]][axis];
       });
     }
@@ -62,16 +62,22 @@ void write_tables(Hdf5File& file, const TetMesh& mesh, const LabelPairs& pairs) 
     label_names.push_back(names[static_cast<LabelIndex>(i)]);
   for (std::size_t i = 0; i < pairs.size(); ++i) pair_names.push_back(names.of_pair(pairs[i]));
   file.make_group("labels");
-  file.make_dataset("labels/value", H5T_STD_U32LE, mesh.labels.size(), 0);
-  file.write_rows<std::uint32_t>("labels/value", 0, mesh.labels.size(),
-                                 [&](std::uint64_t i, std::uint64_t) { return mesh.labels[i].value; });
+  file.write_numbers<std::uint32_t>("labels/value", mesh.labels.size(), 0,
+                                    [&](std::uint64_t i, std::uint64_t) { return mesh.labels[i].value; });
   file.write_strings("labels/name", label_names);
   file.make_group("pairs");
-  file.make_dataset("pairs/labels", H5T_STD_U32LE, pairs.size(), 2);
-  file.write_rows<std::uint32_t>("pairs/labels", 0, pairs.size(), [&](std::uint64_t i, std::uint64_t side) {
-    return mesh.labels[pairs[i][side]].value;
-  });
+  file.write_numbers<std::uint32_t>(
+      "pairs/labels", pairs.size(), 2,
+      [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[pairs[i][side]].value; });
   file.write_strings("pairs/name", pair_names);
+}
+
+// Writes numbers of vertices as the arrays of `part` have them.
+template <class IdAt>
+void write_ids(SharedFile& file, const XdmfPart& part, const RowsInFile& to, std::uint64_t first_row,
+               std::uint64_t num_rows, const IdAt& id_at) {
+  is_wide(part) ? write_rows<std::int64_t>(file, to, first_row, num_rows, id_at)
+                : write_rows<std::int32_t>(file, to, first_row, num_rows, id_at);
 }
 
 std::string data_item(const std::string& file, const char* name, const std::string& sizes, const char* type,
@@ -138,45 +144,47 @@ std::string hdf5_path_of(const std::string& xdmf_path) {
   return std::filesystem::path(xdmf_path).replace_extension(".h5").string();
 }
 
-void create_xdmf_arrays(const std::string& file, const std::string& path, const XdmfPart& part,
-                        const LabelPairs& pairs) {
-  Hdf5File arrays(file, path, Hdf5File::Mode::kMakeNew);
+XdmfArrays create_xdmf_arrays(const std::string& file, const std::string& path, const XdmfPart& part,
+                              const LabelPairs& pairs) {
+  Hdf5File made(file, path);
   const hid_t id_type = is_wide(part) ? H5T_STD_I64LE : H5T_STD_I32LE;
-  arrays.make_dataset("points", H5T_IEEE_F64LE, part.total_vertices, 3);
-  arrays.make_dataset("cells", id_type, part.total_cells, 4);
-  arrays.make_dataset("cell_labels", H5T_STD_I32LE, part.total_cells, 0);
-  arrays.make_dataset("facets", id_type, part.total_facets, 3);
-  arrays.make_dataset("facet_tags", H5T_STD_I32LE, part.total_facets, 0);
-  arrays.make_dataset("facet_labels", H5T_STD_U32LE, part.total_facets, 2);
-  write_tables(arrays, part.mesh, pairs);
-  arrays.close();
+  XdmfArrays arrays;
+  arrays.points = made.make_dataset("points", H5T_IEEE_F64LE, part.total_vertices, 3);
+  arrays.cells = made.make_dataset("cells", id_type, part.total_cells, 4);
+  arrays.cell_labels = made.make_dataset("cell_labels", H5T_STD_I32LE, part.total_cells, 0);
+  arrays.facets = made.make_dataset("facets", id_type, part.total_facets, 3);
+  arrays.facet_tags = made.make_dataset("facet_tags", H5T_STD_I32LE, part.total_facets, 0);
+  arrays.facet_labels = made.make_dataset("facet_labels", H5T_STD_U32LE, part.total_facets, 2);
+  write_tables(made, part.mesh, pairs);
+  made.close();
+  return arrays;
 }
 
 void write_xdmf_part(const std::string& file, const std::string& path, const XdmfPart& part,
-                     const LabelPairs& pairs) {
+                     const LabelPairs& pairs, const XdmfArrays& arrays) {
   const TetMesh& mesh = part.mesh;
   const auto id_of = [&](std::uint32_t vertex) {
     return part.vertex_ids == nullptr ? vertex : (*part.vertex_ids)[vertex];
   };
   const bool has_values = values_are_tags(mesh);
-  Hdf5File arrays(file, path, Hdf5File::Mode::kAddTo);
-  WrittenVertices(part).write(arrays);
-  arrays.write_rows<std::int64_t>("cells", part.first_cell, mesh.cells.size(),
-                                  [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.cells[i][v]); });
-  arrays.write_rows<std::int32_t>("cell_labels", part.first_cell, mesh.cells.size(),
-                                  [&](std::uint64_t i, std::uint64_t) {
-                                    const LabelIndex label = mesh.cell_labels[i];
-                                    return has_values ? mesh.labels[label].value : label;
-                                  });
-  arrays.write_rows<std::int64_t>("facets", part.first_facet, mesh.facets.size(),
-                                  [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.facets[i][v]); });
-  arrays.write_rows<std::int32_t>(
-      "facet_tags", part.first_facet, mesh.facets.size(),
+  SharedFile to(file, path);
+  WrittenVertices(part).write(to, arrays.points);
+  write_ids(to, part, arrays.cells, part.first_cell, mesh.cells.size(),
+            [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.cells[i][v]); });
+  write_rows<std::int32_t>(to, arrays.cell_labels, part.first_cell, mesh.cells.size(),
+                           [&](std::uint64_t i, std::uint64_t) {
+                             const LabelIndex label = mesh.cell_labels[i];
+                             return has_values ? mesh.labels[label].value : label;
+                           });
+  write_ids(to, part, arrays.facets, part.first_facet, mesh.facets.size(),
+            [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.facets[i][v]); });
+  write_rows<std::int32_t>(
+      to, arrays.facet_tags, part.first_facet, mesh.facets.size(),
       [&](std::uint64_t i, std::uint64_t) { return pairs.number_of(mesh.facet_labels[i]) + 1; });
-  arrays.write_rows<std::uint32_t>(
-      "facet_labels", part.first_facet, mesh.facets.size(),
+  write_rows<std::uint32_t>(
+      to, arrays.facet_labels, part.first_facet, mesh.facets.size(),
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[mesh.facet_labels[i][side]].value; });
-  arrays.close();
+  to.finish();
 }
 
 void publish_xdmf(const std::string& path, const XdmfPart& part, TemporaryFile& arrays) {
@@ -190,10 +198,10 @@ void write_xdmf(const TetMesh& mesh, const std::string& path) {
   const std::string arrays_path = hdf5_path_of(path);
   const XdmfPart part(mesh);
   const LabelPairs pairs(mesh.facet_labels);
-  TemporaryFile arrays(arrays_path);
-  create_xdmf_arrays(arrays.temporary_path(), arrays_path, part, pairs);
-  write_xdmf_part(arrays.temporary_path(), arrays_path, part, pairs);
-  publish_xdmf(path, part, arrays);
+  TemporaryFile file(arrays_path);
+  const XdmfArrays arrays = create_xdmf_arrays(file.temporary_path(), arrays_path, part, pairs);
+  write_xdmf_part(file.temporary_path(), arrays_path, part, pairs, arrays);
+  publish_xdmf(path, part, file);
 }
 
 }  // namespace podm

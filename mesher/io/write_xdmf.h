@@ -21,6 +21,7 @@
 
 #include "files/temporary_file.h"
 #include "io/label_table.h"
+#include "io/shared_rows.h"
 #include "podm/mesh_piece.h"
 
 namespace podm {
@@ -37,16 +38,21 @@ struct XdmfPart {
   std::uint64_t total_vertices, total_cells, total_facets;
 };
 
+/// The places of the arrays of the whole mesh.
+struct XdmfArrays {
+  RowsInFile points, cells, cell_labels, facets, facet_tags, facet_labels;
+};
+
 /// Returns "x.h5" for "x.xdmf".
 std::string hdf5_path_of(const std::string& xdmf_path);
 
 /// Makes the arrays of the whole mesh in `file`, a new one, and writes the tables of labels and of `pairs`,
 /// which are the pairs of all pieces. Any part may be passed. Throws InputError that names `path`.
-void create_xdmf_arrays(const std::string& file, const std::string& path, const XdmfPart& part,
-                        const LabelPairs& pairs);
-/// Writes the rows of a part. Only one process may write at a time.
+XdmfArrays create_xdmf_arrays(const std::string& file, const std::string& path, const XdmfPart& part,
+                              const LabelPairs& pairs);
+/// Writes the rows of a part. All parts may be written at once.
 void write_xdmf_part(const std::string& file, const std::string& path, const XdmfPart& part,
-                     const LabelPairs& pairs);
+                     const LabelPairs& pairs, const XdmfArrays& arrays);
 /// Gives `arrays` its name and then makes the XDMF file.
 void publish_xdmf(const std::string& path, const XdmfPart& part, TemporaryFile& arrays);
 

@@ -575,6 +575,54 @@ class Refusals(OnRanks):
         self.assert_verifies(self.out)
 
 
+class JsonProgress(OnRanks):
+    def test_the_first_rank_reports(self):
+        for arguments in ["-n", 2, MPI_PROGRAM, "mesh"], ["-n", 1, MPI_PROGRAM, "mesh", "--in-process", 2]:
+            process = self.mpirun(*arguments, IMAGE, "-o", self.out, "--radius", 3, "--quiet", "--json-progress")
+            self.assert_exit(process, 0)
+            phases = [json.loads(line)["phase"] for line in process.stdout.splitlines()]
+            self.assertEqual(phases.count("transform"), 1)
+            self.assertLessEqual({"transform", "refine", "extract", "measure"}, set(phases))
+
+
+class Vtkhdf(OnRanks):
+    def read(self, path):
+        """Returns the grid of a file as VTK reads it, with a volume or area per cell."""
+        import vtk
+        reader, sizes = vtk.vtkHDFReader(), vtk.vtkCellSizeFilter()
+        reader.SetFileName(str(path))
+        sizes.SetInputConnection(reader.GetOutputPort())
+        sizes.Update()
+        return sizes.GetOutput()
+
+    def test_vtk_reads_cells_and_facets_of_all_ranks(self):
+        try:
+            import vtk
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+        except ImportError:
+            self.skipTest("needs the package python3-vtk9")
+        out = self.folder / "out.vtkhdf"
+        self.assert_exit(self.mesh(3, "--radius", 3, out=out), 0)
+        record = self.last_record()
+        cells, facets = self.read(out), self.read(self.folder / "out_facets.vtkhdf")
+        self.assertEqual((cells.GetNumberOfCells(), cells.GetCellType(0)), (record["cells"], vtk.VTK_TETRA))
+        self.assertEqual(facets.GetNumberOfCells(), record["boundary_facets"])
+        labels, volumes = (vtk_to_numpy(cells.GetCellData().GetArray(name)) for name in ("label", "Volume"))
+        for label in record["labels"]:
+            self.assertEqual((labels == label["value"]).sum(), label["cells"])
+            self.assertAlmostEqual(volumes[labels == label["value"]].sum() / label["volume_mm3"], 1, places=9)
+        ids = vtk_to_numpy(cells.GetPointData().GetArray("GlobalNodeIds"))
+        self.assertEqual((len(set(ids)), ids.max() + 1), (record["vertices"],) * 2)
+        names = cells.GetFieldData().GetAbstractArray("label_name")
+        self.assertEqual(names.GetValue(0), "outside")
+        self.assert_refuses_verify(out)
+
+    def assert_refuses_verify(self, out):
+        process = self.mesh(2, "--radius", 3, "--verify", out=out)
+        self.assert_exit(process, 2)
+        self.assertIn("podm-verify does not read", process.stderr)
+
+
 class Resumed(OnRanks):
     def setUp(self):
         super().setUp()

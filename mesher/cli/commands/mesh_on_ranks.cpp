@@ -182,7 +182,10 @@ class Run {
   MeshingOnRanks mesh(const MeshRun& run) {
     using Style = ProgressDisplay::Style;
     const bool is_silent = command_.quiet || ranks_.rank() != 0;
-    ProgressDisplay display(stderr, is_silent ? Style::kNone : ProgressDisplay::style_for(stderr));
+    ProgressDisplay display =
+        command_.json_progress && ranks_.rank() == 0
+            ? ProgressDisplay(stdout, Style::kJson)
+            : ProgressDisplay(stderr, is_silent ? Style::kNone : ProgressDisplay::style_for(stderr));
     const auto progress = [&](const Progress& now) {
       if (is_in_process() && ranks_.rank() != 0) return;
       if (now.phase != "transform") signals_.stop_on_first_signal(is_silent);

@@ -133,7 +133,7 @@ void check_verifier(const MeshCommand& command) {
       !option.empty() && command.meshing.space == Space::kVoxel)
     throw InputError(
         fmt::format("--verify: podm-verify does not check the sizes of --{} in --space voxel", option));
-  if (mesh_path.ends_with(".xdmf"))
+  if (mesh_path.ends_with(".xdmf") || mesh_path.ends_with(".vtkhdf"))
     throw InputError(fmt::format(
         "--verify: podm-verify does not read {}; it reads all other formats that podm writes", mesh_path));
   if (!can_be_run(verifier_path()))

@@ -114,7 +114,7 @@ struct MeshCommand {
                "mesh file: .vtu or .vtk (VTK), .msh (Gmsh), .xdmf (DOLFINx), .inp (Abaqus,\n"
                "CalculiX), .e or .exo (Exodus II), .mesh (Medit), .node or .ele (TetGen)",
                {.uses = kOfFiles,
-                .help_on_ranks = "mesh: .pvtu, with one .vtu per rank, or .xdmf",
+                .help_on_ranks = "mesh: .pvtu, with one .vtu per rank, .xdmf or .vtkhdf",
                 .short_name = "-o",
                 .is_required = true}),
         nested(&M::mesh_file),
@@ -158,7 +158,7 @@ struct MeshCommand {
                {.unset = "no", .uses = kOfFiles}),
         option(&M::json_progress, "json-progress", "", kRun,
                "print progress as JSON lines on standard output: phase, fraction, cells, seconds",
-               {.unset = "no", .uses = kInPodm}),
+               {.unset = "no", .uses = kOfFiles}),
         option(&M::quiet, "quiet", "", kRun, "print neither progress nor summary",
                {.unset = "both, on standard error", .uses = kOfFiles})};
   }

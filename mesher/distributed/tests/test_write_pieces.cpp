@@ -121,6 +121,44 @@ TEST(WriteXdmf, LabelsThatAreNoTagsGoByTheirRows) {
   EXPECT_TRUE(std::equal(labels.begin(), labels.end(), mesh.cell_labels.begin(), mesh.cell_labels.end()));
 }
 
+// Each partition numbers its own points, and together they have each cell of the mesh once.
+TEST(WriteVtkhdf, EachPieceIsAPartition) {
+  const ScratchFolder folder;
+  const TetMesh mesh = make_test_mesh();
+  const int num_pieces = 3;
+  write_in_pieces(mesh, num_pieces, folder / "a.vtkhdf", write_vtkhdf);
+  EXPECT_EQ(folder.files(), (std::set<std::string>{"a.vtkhdf", "a_facets.vtkhdf"}));
+  const std::vector<MeshPiece> pieces = split_into_pieces(mesh, num_pieces);
+  for (const bool is_facets : {false, true}) {
+    const std::string path = folder / (is_facets ? "a_facets.vtkhdf" : "a.vtkhdf");
+    const auto integers = [&](const std::string& name) { return read_integers(path, "VTKHDF/" + name); };
+    const auto num_points = integers("NumberOfPoints"), num_cells = integers("NumberOfCells"),
+               corners = integers("Connectivity"), offsets = integers("Offsets"),
+               ids = integers("PointData/GlobalNodeIds");
+    const auto points = read_dataset<double>(path, "VTKHDF/Points", H5T_NATIVE_DOUBLE);
+    const std::int64_t per_cell = is_facets ? 3 : 4;
+    std::size_t first_point = 0, corner = 0, offset = 0;
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+      const MeshPiece& of = pieces[piece];
+      const auto cells = is_facets ? of.mesh.facets.size() : of.mesh.cells.size();
+      ASSERT_EQ(num_cells.at(piece), static_cast<std::int64_t>(cells));
+      EXPECT_EQ(integers("NumberOfConnectivityIds").at(piece), num_cells[piece] * per_cell);
+      for (std::int64_t i = 0; i <= num_cells[piece]; ++i) EXPECT_EQ(offsets.at(offset++), per_cell * i);
+      for (std::size_t cell = 0; cell < cells; ++cell)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i, ++corner) {
+          const std::uint32_t vertex = is_facets ? of.mesh.facets[cell][i] : of.mesh.cells[cell][i];
+          ASSERT_LT(corners.at(corner), num_points.at(piece));
+          const std::size_t at = first_point + static_cast<std::size_t>(corners[corner]);
+          EXPECT_EQ(ids.at(at), static_cast<std::int64_t>(of.vertex_ids[vertex]));
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_EQ(points.at(3 * at + axis), of.mesh.vertices[vertex][axis]);
+        }
+      first_point += static_cast<std::size_t>(num_points.at(piece));
+    }
+    EXPECT_EQ(3 * first_point, points.size());
+  }
+}
+
 TEST(WriteSurfaces, RanksWriteWhatOneWouldToTheByte) {
   const ScratchFolder folder;
   const TetMesh mesh = make_test_mesh();
@@ -164,7 +202,7 @@ class NoSpace : public testing::TestWithParam<std::string> {};
 // The earlier mesh is untouched until the first piece gets its name.
 TEST_P(NoSpace, KeepsTheEarlierMesh) {
   const ScratchFolder folder;
-  const Write write = GetParam() == "a.pvtu" ? static_cast<Write>(write_pvtu) : write_xdmf;
+  const Write write = write_pieces;
   write_in_pieces(make_test_mesh(4), 2, folder / GetParam(), write);
   std::map<std::string, std::string> before;
   for (const std::string& name : folder.files()) before[name] = folder.read(name);
@@ -180,7 +218,7 @@ TEST_P(NoSpace, KeepsTheEarlierMesh) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, NoSpace, testing::Values("a.pvtu", "a.xdmf"),
+INSTANTIATE_TEST_SUITE_P(Formats, NoSpace, testing::Values("a.pvtu", "a.xdmf", "a.vtkhdf"),
                          [](const auto& instance) { return instance.param.substr(2); });
 
 }  // namespace
