@@ -104,7 +104,9 @@ void add_declared_options(CLI::App& app, Struct& of, OptionUse use, const char* 
 }
 
 std::string refused_on_ranks(MeshCommand& command) {
-  std::string text = "Not on ranks: --algorithm podm-home.\nOnly on ranks in process: --executor virtual.\n";
+  std::string text =
+      "Not on ranks: --algorithm podm-home; zones are not divided into homes.\n"
+      "Only on ranks in process: --executor virtual.\n";
   for_each_option(command, [&](const Declaration& of, auto&) {
     if (of.not_on_ranks) text += fmt::format("Not on ranks: --{}; {}.\n", of.name, of.not_on_ranks);
   });
