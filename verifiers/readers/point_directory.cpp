@@ -10,9 +10,13 @@ std::vector<Holder> PointDirectory::enter(const std::vector<PointOfPiece>& point
   auto lists = lists_for<PointOfPiece>(ranks_);
   for (const PointOfPiece& point : points) lists[rank_for(point.id)].push_back(point);
   lists = exchange(ranks_, std::move(lists));
-  for (std::uint32_t rank = 0; rank < lists.size(); ++rank)
+  std::size_t num_points = 0;
+  for (const std::vector<PointOfPiece>& list : lists) num_points += list.size();
+  entries_.reserve(num_points);
+  for (std::uint32_t rank = 0; rank < lists.size(); ++rank) {
     for (const PointOfPiece& point : lists[rank]) entries_.push_back({point, rank});
-  lists.clear();
+    std::vector<PointOfPiece>().swap(lists[rank]);
+  }
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.point.id < b.point.id; });
   auto holders = lists_for<Holder>(ranks_);

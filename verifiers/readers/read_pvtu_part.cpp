@@ -54,6 +54,9 @@ class OwnPieces {
         return sources_.begin() + static_cast<std::ptrdiff_t>(piece);
       };
       for_each_piece(*index_, {at(first_), at(first_of(rank + 1))}, [&](const MeshFile& file) { add(file); });
+      points_.shrink_to_fit();  // they grew piece by piece
+      mesh_.cells.shrink_to_fit();
+      mesh_.cell_labels.shrink_to_fit();
     });
   }
 
@@ -150,16 +153,20 @@ struct Head {
   }
 };
 
-// A cell, or a listed facet, on its way to another rank, with the labels of its kind.
-template <std::size_t N, class Label>
-struct SentSimplex {
+// A cell on its way to another rank.
+struct SentCell {
   GlobalId number = 0;
-  std::array<GlobalId, N> ids{};
-  std::array<Point, N> points{};
-  Label label{};
+  std::array<GlobalId, 4> ids{};
+  std::array<Point, 4> points{};
+  LabelValue label = 0;
 };
-using SentCell = SentSimplex<4, LabelValue>;
-using SentFacet = SentSimplex<3, std::array<LabelValue, 2>>;
+
+// A listed facet on its way to the rank that judges it.
+struct SentFacet {
+  GlobalId number = 0;
+  std::array<GlobalId, 3> ids{};
+  std::array<LabelValue, 2> labels{};
+};
 
 template <class Item>
 void release(std::vector<Item>& items) {
@@ -169,7 +176,7 @@ void release(std::vector<Item>& items) {
 class PartReader {
  public:
   PartReader(const std::string& path, Communication& ranks)
-      : path_(path), ranks_(ranks), pieces_(path, ranks), directory_(ranks) {}
+      : path_(path), ranks_(ranks), pieces_(path, ranks), directory_(std::in_place, ranks) {}
 
   Mesh read() {
     pieces_.read();
@@ -178,6 +185,7 @@ class PartReader {
     number_cells();
     enter_points();
     send_facets();
+    directory_.reset();
     send_cells();
     merge_vertices();
     assemble_cells();
@@ -237,6 +245,7 @@ class PartReader {
                      [&](VertexId a, VertexId b) { return points[a].id < points[b].id; });
     do_on_all(ranks_, [&] { check_points(order, num_points); });
     std::vector<PointOfPiece> sorted;
+    sorted.reserve(points.size());
     for (const VertexId p : order) {
       if (sorted.empty() || sorted.back().id != points[p].id) sorted.push_back(points[p]);
       place[p] = static_cast<VertexId>(sorted.size() - 1);
@@ -275,15 +284,15 @@ class PartReader {
   }
 
   void enter_points() {
-    const std::vector<Holder> holders = directory_.enter(pieces_.points());
+    const std::vector<Holder> holders = directory_->enter(pieces_.points());
     do_on_all(ranks_, [&] {
-      if (directory_.differences().empty()) return;
-      const auto& [first, other] = directory_.differences()[0];
+      if (directory_->differences().empty()) return;
+      const auto& [first, other] = directory_->differences()[0];
       throw InputError(
           fmt::format("{}: {}", pieces_.sources()[other.piece].path, difference(first, other).substr(2)));
     });
-    part_.num_vertices = directory_.num_ids();
-    const GlobalId gap = directory_.first_gap();
+    part_.num_vertices = directory_->num_ids();
+    const GlobalId gap = directory_->first_gap();
     if (gap < part_.num_vertices)
       refuse_by_all(kGlobalIds, fmt::format("no piece has vertex {}, and they have {} vertices", gap,
                                             part_.num_vertices));
@@ -302,17 +311,6 @@ class PartReader {
       part_.first_cells.push_back(part_.first_cells.back() + count);
   }
 
-  template <class Sent, class Corners>
-  Sent sent(GlobalId number, const Corners& corners, const std::vector<PointOfPiece>& points) const {
-    Sent simplex;
-    simplex.number = number;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      simplex.ids[i] = corners[i] == kNone ? kNoId : points[corners[i]].id;
-      if (corners[i] != kNone) simplex.points[i] = points[corners[i]].point;
-    }
-    return simplex;
-  }
-
   // Sends each listed facet to the rank that owns its least vertex.
   void send_facets() {
     OwnPieces* lists_facets = &pieces_;
@@ -325,7 +323,7 @@ class PartReader {
       lists_facets = &beside.emplace(path, ranks_);
       beside->read();
       do_on_all(ranks_, [&] { beside->check_head(whole_); });
-      owners = directory_.find_owners(beside->points());
+      owners = directory_->find_owners(beside->points());
       do_on_all(ranks_, [&] {
         for (std::size_t p = 0; p < owners.size(); ++p)
           if (owners[p] == kNoRank)
@@ -351,15 +349,31 @@ class PartReader {
       if (facets > 0 && (labels > 0) != part_.has_facet_labels)
         refuse_by_all("CellData", "label_a and label_b are missing in a piece that has triangles");
     auto lists = lists_for<SentFacet>(ranks_);
+    auto points_for = lists_for<PointOfPiece>(ranks_);
+    lists[rank()].reserve(mesh.facets.size());
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      SentFacet facet = sent<SentFacet>(number + f, mesh.facets[f], points);
-      if (has_labels) facet.label = mesh.facet_labels[f];
+      SentFacet facet{number + f, {}, {}};
+      if (has_labels) facet.labels = mesh.facet_labels[f];
+      for (std::size_t i = 0; i < 3; ++i) facet.ids[i] = id_of(mesh.facets[f][i], points);
       const auto least = std::min_element(facet.ids.begin(), facet.ids.end()) - facet.ids.begin();
-      const VertexId v = mesh.facets[f][static_cast<std::size_t>(least)];
-      lists[v == kNone ? rank() : owners[v]].push_back(facet);
+      const VertexId first = mesh.facets[f][static_cast<std::size_t>(least)];
+      const std::size_t to = first == kNone ? rank() : owners[first];
+      lists[to].push_back(facet);
+      for (const VertexId v : mesh.facets[f])
+        if (v != kNone && (to != rank() || !holds(points[v].id))) points_for[to].push_back(points[v]);
     }
     facets_ = exchange_joined(ranks_, std::move(lists));
+    points_of_facets_ = exchange_joined(ranks_, std::move(points_for));
   }
+
+  static GlobalId id_of(VertexId position, const std::vector<PointOfPiece>& points) {
+    return position == kNone ? kNoId : points[position].id;
+  }
+  bool holds(GlobalId id) const {
+    return std::binary_search(pieces_.points().begin(), pieces_.points().end(), PointOfPiece{id, {}, 0},
+                              is_before);
+  }
+  static bool is_before(const PointOfPiece& a, const PointOfPiece& b) { return a.id < b.id; }
 
   std::string path_of_facets() const {
     const std::string gzip = path_.ends_with(".gz") ? ".gz" : "";
@@ -393,8 +407,12 @@ class PartReader {
       }
       std::sort(to.begin(), to.end());
       to.erase(std::unique(to.begin(), to.end()), to.end());
-      SentCell cell = sent<SentCell>(part_.first_cells[rank()] + c, own.cells[c], points);
-      if (!own.cell_labels.empty()) cell.label = own.cell_labels[c];
+      if (to.empty()) continue;
+      SentCell cell{part_.first_cells[rank()] + c, {}, {}, own.cell_labels.empty() ? 0 : own.cell_labels[c]};
+      for (std::size_t i = 0; i < 4; ++i) {
+        cell.ids[i] = id_of(own.cells[c][i], points);
+        if (cell.ids[i] != kNoId) cell.points[i] = points[own.cells[c][i]].point;
+      }
       for (const std::uint32_t r : to) lists[r].push_back(cell);
     }
     release(holders_);
@@ -403,15 +421,10 @@ class PartReader {
 
   // Adds the vertices of cells and facets of other ranks to the rank's own points.
   void merge_vertices() {
-    std::vector<PointOfPiece> others;
-    const auto add = [&](const auto& simplices) {
-      for (const auto& simplex : simplices)
-        for (std::size_t i = 0; i < simplex.ids.size(); ++i)
-          if (simplex.ids[i] != kNoId) others.push_back({simplex.ids[i], simplex.points[i], 0});
-    };
-    add(guests_);
-    add(facets_);
-    const auto is_before = [](const PointOfPiece& a, const PointOfPiece& b) { return a.id < b.id; };
+    std::vector<PointOfPiece> others = std::move(points_of_facets_);
+    for (const SentCell& guest : guests_)
+      for (std::size_t i = 0; i < 4; ++i)
+        if (guest.ids[i] != kNoId) others.push_back({guest.ids[i], guest.points[i], 0});
     std::sort(others.begin(), others.end(), is_before);
     others.erase(std::unique(others.begin(), others.end(),
                              [](const PointOfPiece& a, const PointOfPiece& b) { return a.id == b.id; }),
@@ -454,14 +467,12 @@ class PartReader {
     const auto first_after = std::find_if(guests_.begin(), guests_.end(), [&](const SentCell& guest) {
       return guest.number >= part_.first_cells[rank()];
     });
-    whole_.cells.reserve(guests_.size() + own.cells.size());
-    if (part_.has_cell_labels) whole_.cell_labels.reserve(whole_.cells.capacity());
+    const std::size_t num_cells = guests_.size() + own.cells.size();
+    whole_.cells.reserve(num_cells);
     const auto add = [&](const SentCell& guest) {
       part_.other_cells.push_back(guest.number);
-      std::array<VertexId, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) corners[i] = place_of(guest.ids[i]);
-      whole_.cells.push_back(corners);
-      if (part_.has_cell_labels) whole_.cell_labels.push_back(guest.label);
+      whole_.cells.push_back(
+          {place_of(guest.ids[0]), place_of(guest.ids[1]), place_of(guest.ids[2]), place_of(guest.ids[3])});
     };
     std::for_each(guests_.begin(), first_after, add);
     part_.own_cells = {whole_.cells.size(), whole_.cells.size() + own.cells.size()};
@@ -469,18 +480,26 @@ class PartReader {
       for (VertexId& v : corners) v = v == kNone ? kNone : new_place_[v];
       whole_.cells.push_back(corners);
     }
-    whole_.cell_labels.insert(whole_.cell_labels.end(), own.cell_labels.begin(), own.cell_labels.end());
-    own = Mesh();
     std::for_each(first_after, guests_.end(), add);
-    release(guests_);
+    release(own.cells);
     release(new_place_);
+    if (part_.has_cell_labels) {
+      std::vector<LabelValue>& labels = whole_.cell_labels;
+      labels.reserve(num_cells);
+      const auto add_label = [&](const SentCell& guest) { labels.push_back(guest.label); };
+      std::for_each(guests_.begin(), first_after, add_label);
+      labels.insert(labels.end(), own.cell_labels.begin(), own.cell_labels.end());
+      std::for_each(first_after, guests_.end(), add_label);
+    }
+    own = Mesh();
+    release(guests_);
   }
 
   void assemble_facets() {
     for (const SentFacet& facet : facets_) {
       part_.facets.push_back(facet.number);
       whole_.facets.push_back({place_of(facet.ids[0]), place_of(facet.ids[1]), place_of(facet.ids[2])});
-      if (part_.has_facet_labels) whole_.facet_labels.push_back(facet.label);
+      if (part_.has_facet_labels) whole_.facet_labels.push_back(facet.labels);
     }
     release(facets_);
   }
@@ -496,14 +515,15 @@ class PartReader {
   std::string path_;
   Communication& ranks_;
   OwnPieces pieces_;
-  PointDirectory directory_;
+  std::optional<PointDirectory> directory_;  // until facets are sent
   Mesh whole_;
   Part part_;
-  std::vector<Holder> holders_;        // of points that other ranks hold, too
-  std::vector<std::uint32_t> owners_;  // of the rank's points
-  std::vector<VertexId> new_place_;    // of the rank's points among all vertices that it holds
-  std::vector<SentCell> guests_;       // ascending
-  std::vector<SentFacet> facets_;      // ascending
+  std::vector<Holder> holders_;                 // of points that other ranks hold, too
+  std::vector<std::uint32_t> owners_;           // of the rank's points
+  std::vector<VertexId> new_place_;             // of the rank's points among all vertices that it holds
+  std::vector<SentCell> guests_;                // ascending
+  std::vector<SentFacet> facets_;               // ascending
+  std::vector<PointOfPiece> points_of_facets_;  // those that the rank may not hold
 };
 
 }  // namespace

@@ -178,6 +178,7 @@ class MpiTest(unittest.TestCase):
 
     def test_exit_codes_and_texts(self):
         for arguments, code, text in (([self.index], 0, " claims pass"), ([self.index, "--angle", "50"], 1, "fail"),
+                                      ([self.index, "--json", "/dev/full"], 2, "/dev/full: cannot be written"),
                                       (["--version"], 0, "podm-verify-mpi "), (["--nonsense"], 2, "MESH is required"),
                                       ([self.index, "--in-process", "2"], 2, "MPI has started 2 processes"),
                                       ([self.index.with_name("none.pvtu")], 2, "No such file")):
