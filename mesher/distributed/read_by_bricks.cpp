@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "distributed/collective_errors.h"
@@ -40,10 +41,23 @@ void for_each_chunk(const LabelImage& grid, const Layers& slab, const Use& use) 
     use(Layers{first, std::min(first + length, slab.end)});
 }
 
-LabelImage read_slices(const VoxelFile& file, int low, int high, std::size_t threads) {
-  const auto [x, y, z] = file.grid().size;
-  return file.read({0, 0, std::max(0, low)}, {x, y, std::min(high, z)}, threads);
-}
+// Slices of a file, which are read from front to back.
+class Slices {
+ public:
+  Slices(const VoxelFile& file, int threads) : file_(file), threads_(num_threads(threads)) {
+    if (file.is_compressed()) stream_.emplace(file);
+  }
+  LabelImage read(int low, int high) {
+    const auto [x, y, z] = file_.grid().size;
+    high = std::min(high, z);
+    return stream_ ? stream_->read(low, high, threads_) : file_.read({0, 0, low}, {x, y, high}, threads_);
+  }
+
+ private:
+  const VoxelFile& file_;
+  const std::size_t threads_;
+  std::optional<VoxelStream> stream_;
+};
 
 // The labels of the image and the values in the file that have them.
 class LabelsOfValues {
@@ -111,9 +125,12 @@ struct Census {
   }
 };
 
+using LabelsOfBrick = std::array<LabelIndex, 64>;
+
 // The labels of bricks and the numbers of one slab.
 struct Slab {
   std::vector<LabelIndex> label_of_brick;
+  std::vector<LabelsOfBrick> mixed;  // of mixed bricks, in their order, if the file is compressed
   std::vector<std::string> digests;  // by layer
   Census census;
 };
@@ -124,8 +141,10 @@ class ReadSlab {
       : file_(file),
         labels_(labels),
         threads_(threads),
+        slices_(file, threads),
         slab_{
             .label_of_brick = {},
+            .mixed = {},
             .digests = {},
             .census = {.voxels_of_label = std::vector<std::uint64_t>(num_labels), .low = file.grid().size}} {}
 
@@ -138,7 +157,7 @@ class ReadSlab {
   // A layer more on either side, or a slice, gives the neighbors of the voxels.
   void add(const Layers& layers) {
     const int before = std::max(0, layers.first - 1);
-    LabelImage part = read_slices(file_, 4 * before, 4 * layers.end + 1, num_threads(threads_));
+    LabelImage part = slices_.read(4 * before, 4 * layers.end + 1);
     labels_.apply(file_.path(), part, num_threads(threads_));
     const Layers here{layers.first - before, layers.end - before};
     add_bricks(part, here);
@@ -154,10 +173,22 @@ class ReadSlab {
     const auto [x, y, z] = bricks.size();
     for (int k = layers.first; k < layers.end; ++k)
       for (int j = 0; j < y; ++j)
-        for (int i = 0; i < x; ++i)
-          slab_.label_of_brick.push_back(masks[bricks.index(i, j, k)] != 0
-                                             ? ImageByBricks::kMixed
-                                             : part.voxels[part.index(4 * i, 4 * j, 4 * k)]);
+        for (int i = 0; i < x; ++i) {
+          const bool is_mixed = masks[bricks.index(i, j, k)] != 0;
+          slab_.label_of_brick.push_back(is_mixed ? ImageByBricks::kMixed
+                                                  : part.voxels[part.index(4 * i, 4 * j, 4 * k)]);
+          if (is_mixed && file_.is_compressed())
+            slab_.mixed.push_back(labels_in(part, {4 * i, 4 * j, 4 * k}));
+        }
+  }
+
+  static LabelsOfBrick labels_in(const LabelImage& part, const Voxel& first) {
+    LabelsOfBrick labels{};
+    for (int k = first.k; k < std::min(first.k + 4, part.size[2]); ++k)
+      for (int j = first.j; j < std::min(first.j + 4, part.size[1]); ++j)
+        for (int i = first.i; i < std::min(first.i + 4, part.size[0]); ++i)
+          labels[place_in_brick({i, j, k})] = part.voxels[part.index(i, j, k)];
+    return labels;
   }
 
   void add_census(const LabelImage& part, const Layers& layers, int first_slice) {
@@ -171,7 +202,56 @@ class ReadSlab {
   const VoxelFile& file_;
   const LabelsOfValues& labels_;
   const int threads_;
+  Slices slices_;
   Slab slab_;
+};
+
+// The labels of an image whose file is compressed: those of mixed bricks are in memory.
+class HeldBricks {
+ public:
+  // Keeps the reference.
+  HeldBricks(const ImageByBricks& image, std::vector<LabelsOfBrick> mixed)
+      : image_(image), bricks_(image.size), mixed_(std::move(mixed)), first_of_row_{0} {
+    const auto length = bricks_.size()[0];
+    for (auto row = image.label_of_brick.begin(); row != image.label_of_brick.end(); row += length) {
+      const auto count = std::count(row, row + length, ImageByBricks::kMixed);
+      first_of_row_.push_back(first_of_row_.back() + static_cast<std::size_t>(count));
+    }
+  }
+
+  LabelImage read(const Voxel& low, const Voxel& high) const {
+    LabelImage part = image_;
+    part.size = {high.i - low.i, high.j - low.j, high.k - low.k};
+    part.voxels.resize(part.num_voxels());
+    for (int k = low.k / 4; 4 * k < high.k; ++k)
+      for (int j = low.j / 4; 4 * j < high.j; ++j) read_row({low.i, 4 * j, 4 * k}, low, high, part);
+    return part;
+  }
+
+ private:
+  // Reads a row of bricks.
+  void read_row(const Voxel& row, const Voxel& low, const Voxel& high, LabelImage& part) const {
+    const std::size_t first = bricks_.index(0, row.j / 4, row.k / 4);
+    std::size_t next = first_of_row_[first / unsigned_of(bricks_.size()[0])];
+    for (int i = 0; 4 * i < high.i; ++i) {
+      const LabelIndex label = image_.label_of_brick[first + unsigned_of(i)];
+      const LabelsOfBrick* const mixed = label == ImageByBricks::kMixed ? &mixed_[next++] : nullptr;
+      if (4 * i + 3 < low.i) continue;
+      for (unsigned place = 0; place < 64; ++place) {
+        const Voxel at{4 * i + static_cast<int>(place & 3) - low.i,
+                       row.j + static_cast<int>(place >> 2 & 3) - low.j,
+                       row.k + static_cast<int>(place >> 4) - low.k};
+        const bool is_in = std::min({at.i, at.j, at.k}) >= 0 && at.i < part.size[0] && at.j < part.size[1] &&
+                           at.k < part.size[2];
+        if (is_in) part.voxels[part.index(at.i, at.j, at.k)] = mixed != nullptr ? (*mixed)[place] : label;
+      }
+    }
+  }
+
+  const ImageByBricks& image_;
+  const BrickGrid bricks_;
+  const std::vector<LabelsOfBrick> mixed_;
+  std::vector<std::size_t> first_of_row_;  // positions in `mixed_`, by row of bricks
 };
 
 // A label and the number of consecutive bricks that have it.
@@ -191,6 +271,7 @@ std::vector<Run> runs_of(const std::vector<LabelIndex>& labels) {
 Bytes message_of(const Slab& slab) {
   Bytes message;
   append(message, runs_of(slab.label_of_brick));
+  append(message, slab.mixed);
   std::string digests;
   for (const std::string& digest : slab.digests) digests += digest;
   append(message, std::span<const char>(digests));
@@ -207,6 +288,8 @@ void add_slab(const Bytes& message, Slab& sum) {
   MessageReader reader(message);
   for (const Run& run : reader.read<Run>())
     sum.label_of_brick.insert(sum.label_of_brick.end(), run.length, static_cast<LabelIndex>(run.label));
+  const auto mixed = reader.read<LabelsOfBrick>();
+  sum.mixed.insert(sum.mixed.end(), mixed.begin(), mixed.end());
   const std::vector<char> digests = reader.read<char>();
   for (std::size_t at = 0; at < digests.size(); at += kHexadecimal)
     sum.digests.emplace_back(digests.data() + at, kHexadecimal);
@@ -225,6 +308,7 @@ std::shared_ptr<const ImageByBricks> image_of(LabelImage&& grid, std::shared_ptr
   static_cast<LabelImage&>(*image) = std::move(grid);
   Slab sum{
       .label_of_brick = {},
+      .mixed = {},
       .digests = {},
       .census = {.voxels_of_label = std::vector<std::uint64_t>(image->labels.size()), .low = image->size}};
   for (const Bytes& message : slabs) add_slab(message, sum);
@@ -234,6 +318,11 @@ std::shared_ptr<const ImageByBricks> image_of(LabelImage&& grid, std::shared_ptr
   image->high = sum.census.high;
   image->sides = sum.census.sides;
   image->digest = digest_of_layers(sum.digests);
+  if (file->is_compressed()) {
+    const auto held = std::make_shared<const HeldBricks>(*image, std::move(sum.mixed));
+    image->read = [held](const Voxel& low, const Voxel& high) { return held->read(low, high); };
+    return image;
+  }
   image->read = [file = std::move(file), labels = std::move(labels)](const Voxel& low, const Voxel& high) {
     LabelImage part = file->read(low, high, 1);
     labels->apply(file->path(), part, 1);
@@ -254,8 +343,9 @@ std::vector<std::uint32_t> values_in(const VoxelFile& file, const Layers& slab, 
                                      Communication& ranks) {
   std::set<std::uint32_t> own, all;
   const auto read = [&] {
+    Slices slices(file, threads);
     for_each_chunk(file.grid(), slab, [&](const Layers& layers) {
-      const LabelImage part = read_slices(file, 4 * layers.first, 4 * layers.end, num_threads(threads));
+      const LabelImage part = slices.read(4 * layers.first, 4 * layers.end);
       for (const Label& label : part.labels) own.insert(label.value);
     });
   };
@@ -279,7 +369,9 @@ std::shared_ptr<const LabelImage> read_by_bricks(const std::shared_ptr<const Vox
                                                  const LabelSelection& selection, int threads,
                                                  SharedValue<LabelImage>& shared, Communication& ranks) {
   expect_one_file(*file, ranks);
-  const Layers own = layers_of(ranks.rank(), ranks.size(), BrickGrid(file->grid().size).size()[2]);
+  const int num_layers = BrickGrid(file->grid().size).size()[2];
+  const Layers own = !file->is_compressed() ? layers_of(ranks.rank(), ranks.size(), num_layers)
+                                            : Layers{0, ranks.rank() == 0 ? num_layers : 0};
   const std::vector<std::uint32_t> values = values_in(*file, own, threads, ranks);
   LabelImage image = file->grid();
   std::shared_ptr<const LabelsOfValues> labels;

@@ -1,9 +1,13 @@
-// Images that no rank holds as a whole. The voxels stay in the file. Each rank reads a slab of it once, and
+// Images that no rank holds as a whole. The voxels stay in the file. Each rank reads a slab of it, and
 // all ranks learn of each brick of 4^3 voxels its label, or that it has surface voxels: 2 bytes for 64
 // voxels. From this each rank makes the table of the feature transform, 8 bytes per brick, with exact bounds
 // of distances for all of the image (feature_transform.h). It reads the voxels of bricks near the isosurface
 // when a query first needs them (unread_bricks.h), so it holds those of its block, of the cover around it,
 // and of the zones that it gets later.
+//
+// A compressed file cannot be read in parts. Rank 0 inflates it twice, a few slices at a time, and sends all
+// ranks the labels of the bricks with surface voxels. Those of all other voxels are the labels of their
+// bricks.
 //
 // No margin of a crop has to be proved. Each answer of the oracle depends on the table and on words of
 // bricks, and both are the same as those of the whole image.

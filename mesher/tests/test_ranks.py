@@ -1,10 +1,12 @@
 """podm-mpi as a user runs it: its meshes on several ranks, its refusals, and the end of a run whose ranks fail or are
 stopped. Needs $PODM_MPI_PROGRAM and $PODM_MPIRUN, which are empty without MPI."""
 
+import gzip
 import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -12,7 +14,7 @@ import unittest
 
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 from slow import few, slow
-from small_images import INT8, ball_voxels, voxels_of, write_metaimage, write_nifti, write_nrrd
+from small_images import INT8, ball_voxels, nifti_bytes, voxels_of, write_metaimage, write_nifti, write_nrrd
 
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
@@ -407,10 +409,24 @@ class ByBricks(OnRanks):
             self.assert_verifies(self.out, "--radius", 4, "--image", small)
             records.append(self.last_record())
         in_large, in_small = records
+        self.assert_compressed_makes_the_same(large, in_large["ranks"]["mesh_hash"])
         self.assertEqual(in_large["ranks"]["image"], "by bricks")
         self.assertLess(in_large["peak_rss_bytes"], 2 * 2**30)
         self.assertLess(abs(in_large["cells"] / in_small["cells"] - 1), 0.02)
         self.assert_refused(["mesh", large, "-o", self.out], "large.mhd", "too large")
+
+    def assert_compressed_makes_the_same(self, large, mesh_hash):
+        """`large` is a MetaImage. The same voxels in a .nii.gz have the same position."""
+        image = self.folder / "large.nii.gz"
+        length = 1500
+        affine = ((-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, 1, 0))
+        with gzip.open(image, "wb", compresslevel=1) as file, open(large.with_suffix(".raw"), "rb") as voxels:
+            file.write(nifti_bytes(b"", (length,) * 3, affine=affine))
+            shutil.copyfileobj(voxels, file, 1 << 24)
+        process = run_podm("mesh", image, "-o", self.out, "--record", self.runs, "--in-process", 8, "--radius", 4,
+                           program=MPI_PROGRAM, env=ENVIRONMENT)
+        self.assert_exit(process, 0)
+        self.assertEqual(self.last_record()["ranks"]["mesh_hash"], mesh_hash)
 
     def test_faults_are_refused_by_all(self):
         voxels = bytearray(ball_voxels(12))

@@ -126,6 +126,7 @@ class Run {
     const auto open = [&] {
       if (!stays_in_file()) return;
       file = VoxelFile::open(command_.image.path);
+      if (file && file->is_compressed() && file->grid().num_voxels() <= kMaxVoxels) file = nullptr;
       selection = with_table(command_.image);
     };
     do_collectively(open, ranks_);
