@@ -2,6 +2,7 @@
 // podm-verify. The first rank reports faults that all ranks know, and all ranks end. Otherwise the rank that
 // fails reports its fault and ends the other ranks.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <csignal>
 #include <cstdio>
@@ -58,6 +59,7 @@ int verify_in_process(const Command& command) {
 }
 
 int run(int argc, char** argv, Communication& ranks) {
+  expect_agreement(ranks, {{"command line", fmt::format("{}", fmt::join(argv + 1, argv + argc, " "))}});
   CommandLine line;
   do_on_all(ranks, [&] {
     line = parse_command_line(argc, argv, Program::kPodmVerifyMpi);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "agreement.h"
 #include "report/reports.h"
 #include "run_claims.h"
 
@@ -29,9 +30,11 @@ int verify(const Command& command, Communication& ranks, const std::function<Mes
   const auto start = std::chrono::steady_clock::now();
   const Options& options = command.options;
   do_on_all(ranks, [&] { check_claims(options); });
+  expect_same_index(options, ranks);
   Mesh mesh = read();
   Inputs inputs;
   do_on_all(ranks, [&] { inputs = read_inputs(options, std::move(mesh)); });
+  expect_same_inputs(inputs, options, ranks);
   const std::vector<std::string> claims = chosen_claims(options, inputs.mesh);
   const std::vector<ClaimResult> results = run_claims(inputs, options, claims, [&](const std::string& claim) {
     if (shows_progress) fmt::print(stderr, "{}checking {} ...", kClearLine, claim);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -70,16 +71,24 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  explicit ByteReader(const Bytes& bytes) : next_(bytes.data()) {}
+  explicit ByteReader(const Bytes& bytes) : next_(bytes.data()), num_left_(bytes.size()) {}
   template <class... Values>
   void operator()(Values&... values) {
     (read(values), ...);
   }
+  void expect_end() const {
+    if (num_left_ > 0) throw std::runtime_error("a message between ranks is longer than its values");
+  }
 
  private:
+  void expect_left(std::uint64_t count, std::size_t least_size) const {
+    if (count > num_left_ / least_size) throw std::runtime_error("a message between ranks ends early");
+  }
   void take(void* place, std::size_t count) {
+    expect_left(count, 1);
     std::copy_n(next_, count, static_cast<std::byte*>(place));
     next_ += count;
+    num_left_ -= count;
   }
   template <class Value>
   void read(Value& value) {
@@ -108,10 +117,12 @@ class ByteReader {
   }
   template <class List>
   void read_list(List& items) {
+    constexpr bool is_copied = std::is_trivially_copyable_v<typename List::value_type>;
     std::uint64_t size = 0;
     read(size);
+    expect_left(size, is_copied ? sizeof(typename List::value_type) : 1);
     items.resize(size);
-    if constexpr (std::is_trivially_copyable_v<typename List::value_type>) {
+    if constexpr (is_copied) {
       take(items.data(), size * sizeof(typename List::value_type));
     } else {
       for (auto& item : items) read(item);
@@ -119,6 +130,7 @@ class ByteReader {
   }
 
   const std::byte* next_;
+  std::size_t num_left_;
 };
 
 template <class Value>
@@ -128,10 +140,12 @@ Bytes bytes_of(Value value) {
   return writer.take();
 }
 
+/// Throws std::runtime_error unless the bytes are those of one value.
 template <class Value>
 void read_bytes(const Bytes& bytes, Value& value) {
   ByteReader reader(bytes);
   reader(value);
+  reader.expect_end();
 }
 
 }  // namespace podm::verify

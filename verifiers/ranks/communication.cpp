@@ -1,5 +1,7 @@
 #include "ranks/communication.h"
 
+#include <fmt/format.h>
+
 #include <numeric>
 
 namespace podm::verify {
@@ -18,6 +20,17 @@ void do_on_all(Communication& ranks, const std::function<void()>& action) {
   }
   for (const std::string& text : gather(ranks, fault))
     if (!text.empty()) throw RefusedByAll(text);
+}
+
+void expect_agreement(Communication& ranks, const std::vector<Fact>& facts) {
+  std::vector<std::string> own;
+  for (const auto& [name, text] : facts) own.push_back(text);
+  const std::vector<std::vector<std::string>> all = gather(ranks, own);
+  for (std::size_t rank = 1; rank < all.size(); ++rank)
+    for (std::size_t i = 0; i < facts.size(); ++i)
+      if (all[rank].at(i) != all[0].at(i))
+        throw RefusedByAll(fmt::format("rank {} of {} does not have the {} of rank 0: {}, not {}", rank,
+                                       all.size(), facts[i].first, all[rank][i], all[0][i]));
 }
 
 }  // namespace podm::verify

@@ -89,4 +89,10 @@ std::vector<Value> sum_over(Communication& ranks, const std::vector<Value>& valu
 /// InputError on any; the text is that of the first such rank.
 void do_on_all(Communication& ranks, const std::function<void()>& action);
 
+/// A name, and the text that all ranks must have for it.
+using Fact = std::pair<std::string, std::string>;
+/// Throws RefusedByAll if the ranks differ, naming the first that differs from rank 0 and its first such
+/// fact. All ranks pass facts of the same names.
+void expect_agreement(Communication& ranks, const std::vector<Fact>& facts);
+
 }  // namespace podm::verify

@@ -1,40 +1,19 @@
-#include <openssl/evp.h>
 #include <sys/resource.h>
 
 #include <cmath>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "errors.h"
 #include "image/image_frame.h"
 #include "ranks/part.h"
 #include "report/reports.h"
+#include "sha256.h"
 
 namespace podm::verify {
 
 namespace {
 
 using Json = nlohmann::json;
-
-std::string sha256_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
-  std::vector<char> block(1 << 20);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(file.gcount()));
-  if (!file.eof()) throw InputError(path + ": cannot be read again for its hash");
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned length = 0;
-  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
-  std::string text;
-  for (unsigned i = 0; i < length; ++i) {
-    text += "0123456789abcdef"[digest[i] >> 4];
-    text += "0123456789abcdef"[digest[i] & 15];
-  }
-  return text;
-}
 
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 

@@ -17,6 +17,8 @@ from test_pieces import PiecesTest, cubes_of_two_labels
 
 VERIFIER, ON_RANKS = os.environ["PODM_VERIFIER"], os.environ["PODM_VERIFIER_MPI"]
 RANKS = 1, 2, 3, 5
+SCHEDULE = json.dumps({"schema": "podm-schedule/1", "algorithm": "pdr-podm",
+                       "mesh_to_grid": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], "leaves": [[0, 0, 0, 8]]}) + "\n"
 OWN_TO_A_RUN = "program", "ranks", "seconds", "peak_rss_bytes", "threads"
 
 
@@ -46,7 +48,7 @@ def shaken(mesh, random):
         elif fault == 1:
             mesh.cells = np.delete(mesh.cells, c, axis=0)
         elif fault == 2:
-            mesh.cells = np.append(mesh.cells, np.roll(mesh.cells[c:c + 1, [1, 2, 0, 3, 4]], 0), axis=0)
+            mesh.cells = np.append(mesh.cells, mesh.cells[c:c + 1, [1, 2, 0, 3, 4]], axis=0)
         elif fault == 3:
             mesh.cells[c, 4] = random.integers(4)
         elif fault == 4:
@@ -63,16 +65,20 @@ def shaken(mesh, random):
     return mesh
 
 
+def write_image_of_two_labels(folder, length):
+    voxels = np.ones((2, 3, length), dtype=np.uint8)
+    voxels[1:] = 2
+    write_inr(folder / "image.inr", voxels)
+    return folder / "image.inr"
+
+
 class ReportTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         self.index = self.folder / "m.pvtu"
-        image = self.folder / "image.inr"
-        voxels = np.ones((2, 3, 4), dtype=np.uint8)
-        voxels[1:] = 2
-        write_inr(image, voxels)
+        image = write_image_of_two_labels(self.folder, 4)
         self.options = ["--image", image, "--radius", "0.9", "--min-dihedral", "20", "--delta", "0.3"]
 
     def report(self, program, *options):
@@ -167,14 +173,18 @@ class MpiTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.index = pathlib.Path(folder.name) / "m.pvtu"
+        self.folder = pathlib.Path(folder.name)
+        self.index = self.folder / "m.pvtu"
         MeshInPieces(cubes_of_two_labels(), 3).write(self.index)
 
     def run_ranks(self, num_ranks, *arguments):
+        return self.run_mpi("-n", num_ranks, ON_RANKS, *arguments)
+
+    def run_mpi(self, *arguments):
         environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                            OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1")
-        return subprocess.run([os.environ["PODM_MPIRUN"], "-n", str(num_ranks), ON_RANKS, *map(str, arguments)],
-                              capture_output=True, text=True, timeout=120, check=False, env=environment)
+        return subprocess.run([os.environ["PODM_MPIRUN"], *map(str, arguments)], capture_output=True, text=True,
+                              timeout=120, check=False, env=environment)
 
     def test_exit_codes_and_texts(self):
         for arguments, code, text in (([self.index], 0, " claims pass"), ([self.index, "--angle", "50"], 1, "fail"),
@@ -186,6 +196,45 @@ class MpiTest(unittest.TestCase):
                 process = self.run_ranks(2, *arguments)
                 self.assertEqual(process.returncode, code, process.stdout + process.stderr)
                 self.assertEqual((process.stdout + process.stderr).count(text), 1, process.stdout + process.stderr)
+
+    def test_claims_about_an_image(self):
+        image = write_image_of_two_labels(self.folder, 4)
+        options = self.index, "--image", image, "--claims", "labels,surface_vertices,fidelity", "--json"
+        expected = subprocess.run([VERIFIER, *options, self.folder / "one.json"], capture_output=True, check=False)
+        process = self.run_ranks(2, *options, self.folder / "ranks.json")
+        self.assertEqual(process.returncode, expected.returncode, process.stdout + process.stderr)
+        one, ranks = (json.loads((self.folder / f"{name}.json").read_text()) for name in ("one", "ranks"))
+        self.assertEqual(list(differences(one, ranks)), [])
+
+    def assert_refused(self, process, *texts):
+        self.assertEqual(process.returncode, 2, process.stdout + process.stderr)
+        for text in "rank 1 of 2 does not have the ", *texts:
+            self.assertEqual(process.stderr.count(text), 1, process.stderr)
+        self.assertFalse((self.folder / "report.json").exists())
+
+    def test_other_files_on_a_rank(self):
+        folders = self.folder / "a", self.folder / "b"
+        for folder in folders:
+            folder.mkdir()
+            MeshInPieces(cubes_of_two_labels(), 3).write(folder / "m.pvtu")
+            (folder / "leaves.jsonl").write_text(SCHEDULE)
+            write_image_of_two_labels(folder, 4)
+        command = [ON_RANKS, "m.pvtu", "--image", "image.inr", "--size-image", "image.inr",
+                   "--schedule", "leaves.jsonl", "--json", self.folder / "report.json"]
+        launch = ["-n", 1, "-wdir", folders[0], *command, ":", "-n", 1, "-wdir", folders[1], *command]
+        self.assertIn(self.run_mpi(*launch).returncode, (0, 1))
+        (self.folder / "report.json").unlink()
+        (folders[1] / "leaves.jsonl").write_text(SCHEDULE.replace("8]", "16]"))
+        self.assert_refused(self.run_mpi(*launch), "leaves.jsonl of rank 0: SHA-256")
+        write_image_of_two_labels(folders[1], 5)
+        self.assert_refused(self.run_mpi(*launch), "image.inr of rank 0: SHA-256")
+        MeshInPieces(cubes_of_two_labels(), 2).write(folders[1] / "m.pvtu")
+        self.assert_refused(self.run_mpi(*launch), "m.pvtu of rank 0: SHA-256")
+
+    def test_other_options_on_a_rank(self):
+        command = [ON_RANKS, self.index, "--json", self.folder / "report.json", "--angle"]
+        process = self.run_mpi("-n", 1, *command, 30, ":", "-n", 1, *command, 29)
+        self.assert_refused(process, "command line of rank 0: ", "--angle 29, not ", "--angle 30\n")
 
 
 if __name__ == "__main__":

@@ -46,10 +46,24 @@ inline void expect_fault_of_all(Communication& ranks) {
   }
 }
 
+inline void expect_refusal_of_other_facts(Communication& ranks) {
+  expect_agreement(ranks, {{"a", "same"}, {"b", ""}});
+  for (int other = 1; other < ranks.size(); ++other) {
+    try {
+      expect_agreement(ranks, {{"a", "same"}, {"b", ranks.rank() >= other ? "new" : "old"}});
+      ADD_FAILURE() << "no refusal on rank " << ranks.rank();
+    } catch (const RefusedByAll& error) {
+      EXPECT_EQ(error.what(), "rank " + std::to_string(other) + " of " + std::to_string(ranks.size()) +
+                                  " does not have the b of rank 0: new, not old");
+    }
+  }
+}
+
 inline void expect_all_of_communication(Communication& ranks) {
   expect_lists_to_arrive(ranks);
   expect_values_of_all(ranks);
   expect_fault_of_all(ranks);
+  expect_refusal_of_other_facts(ranks);
 }
 
 }  // namespace podm::verify

@@ -60,5 +60,17 @@ TEST(ByteStream, ReturnsWhatWasWritten) {
   EXPECT_EQ(read, written);
 }
 
+TEST(ByteStream, RefusesBytesOfAnotherLength) {
+  const Bytes bytes = bytes_of(std::vector<Named>{{"a", {{1, {0.5, -0.0}}, {-7, {}}}}, {"", {}}});
+  std::vector<Named> read;
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(read_bytes({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)}, read),
+                 std::runtime_error);
+  Bytes longer = bytes;
+  longer.push_back({});
+  EXPECT_THROW(read_bytes(longer, read), std::runtime_error);
+  EXPECT_THROW(read_bytes(bytes_of(std::uint64_t{1} << 62), read), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace podm::verify
