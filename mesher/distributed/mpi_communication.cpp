@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <deque>
+#include <exception>
 #include <numeric>
 
 namespace podm {
@@ -101,6 +102,7 @@ class MpiCommunication final : public Communication {
     sent_.bytes_sent += message.size();
   }
 
+  const int uncaught_ = std::uncaught_exceptions();
   const double start_s_ = process_seconds();
   InCollectives in_collectives_;
   RankReport sent_;
@@ -231,8 +233,10 @@ void MpiCommunication::receive_announcement() {
 }
 
 // MPI requires that every message is received, so the ranks first receive the announcements that are still on
-// their way.
+// their way. A rank that an exception unwinds does not wait for the others, which may never come here; its
+// process aborts all ranks.
 MpiCommunication::~MpiCommunication() {
+  if (std::uncaught_exceptions() > uncaught_) return;
   try {
     std::array<std::uint64_t, 1> num_announced{announced_.size()};
     sum(num_announced);
