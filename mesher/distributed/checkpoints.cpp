@@ -68,6 +68,10 @@ void expect_same(const std::string& path, const std::vector<Fact>& ours, const s
 Checkpoints::Checkpoints(const CheckpointOptions& options, const std::vector<Fact>& facts,
                          Communication& ranks)
     : folder_(options.folder), seconds_(options.seconds), facts_(facts), ranks_(ranks) {
+  const auto look = [&] {
+    if (options.is_resumed) expect_text();
+  };
+  do_collectively(look, ranks_);  // before the lock makes the folder
   const auto lock = [&] {
     if (ranks_.rank() == 0) lock_.emplace(folder_);
   };
@@ -85,9 +89,14 @@ std::string Checkpoints::piece_path(std::uint64_t number, std::uint64_t rank) co
   return fmt::format("{}/{}{}_{}.bin", folder_, kPiecePrefix, number, rank);
 }
 
+void Checkpoints::expect_text() const {
+  std::error_code error;
+  if (std::filesystem::exists(text_path(), error)) return;
+  throw InputError(error ? fmt::format("{}: cannot read: {}", text_path(), error.message())
+                         : fmt::format("{}: the folder has no whole checkpoint", folder_));
+}
+
 CheckpointText Checkpoints::read_text() const {
-  if (!std::filesystem::exists(text_path()))
-    throw InputError(fmt::format("{}: the folder has no whole checkpoint", folder_));
   CheckpointText text = read_checkpoint_text(text_path(), bytes_of_file(text_path()));
   expect_same(text_path(), facts_, text.facts);
   return text;

@@ -24,9 +24,9 @@ struct CheckpointOptions {
 
 class Checkpoints {
  public:
-  /// Collective. Makes the folder, and locks it on rank 0 while the object lives. Throws RefusedByAll if
-  /// another run has locked it, or if the run is resumed and the checkpoint is absent, damaged or has other
-  /// facts.
+  /// Collective. Makes the folder unless the run is resumed, and locks it on rank 0 while the object lives.
+  /// Throws RefusedByAll if another run has locked it, or if the run is resumed and the checkpoint is absent,
+  /// damaged or has other facts.
   Checkpoints(const CheckpointOptions& options, const std::vector<Fact>& facts, Communication& ranks);
 
   bool is_resumed() const { return last_.has_value(); }
@@ -46,6 +46,7 @@ class Checkpoints {
 
   std::string text_path() const { return folder_ + "/checkpoint.txt"; }
   std::string piece_path(std::uint64_t number, std::uint64_t rank) const;
+  void expect_text() const;
   CheckpointText read_text() const;
   std::uint64_t largest_number() const;
   void write_text(const std::vector<CheckpointPiece>& pieces, std::uint64_t rounds);

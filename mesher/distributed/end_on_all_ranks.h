@@ -1,7 +1,8 @@
 // Ends a run on all ranks within a second after it has ended on one.
 //
-// A rank whose work ends at a limit, by a signal or by a lack of memory announces it when its workers have
-// stopped. The other ranks hear of it while their workers are still at work: StopControl::observe() calls
+// A rank whose work ends at the limit of time, by a signal or by a lack of memory announces it when its
+// workers have stopped. A rank that has made its share of the limit of cells does not, so that the others
+// make theirs. The other ranks hear of it while their workers are still at work: StopControl::observe() calls
 // hear() a few times per second, on the thread that called the run. This is the only thread that may use
 // Communication. No worker waits for it.
 #pragma once

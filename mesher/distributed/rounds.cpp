@@ -152,6 +152,11 @@ class Rounds {
     return num_over[0] > 0;
   }
 
+  // The others may still make their own shares of the limit of cells.
+  static bool concerns_all(StopReason reason) {
+    return reason != StopReason::kComplete && reason != StopReason::kElementLimit;
+  }
+
   void divide_space() {
     if (cut_seed_ != 0) {
       blocks_.emplace(grid_, cut_seed_, ranks_.size());
@@ -200,17 +205,20 @@ class Rounds {
     exchange_->check();
   }
 
-  // Inserts the vertices of a checkpoint in the block, one vertex of each cube elsewhere, and then those that
-  // the cells with a vertex in the block need. The ranks of the checkpoint may have had other blocks.
+  // Inserts the vertices of a checkpoint in the block, the fewer elsewhere the farther away, and then those
+  // that the cells with a vertex in the block need. The ranks of the checkpoint may have had other blocks.
   void restore() {
     std::vector<std::vector<LearntVertex>> of_rank(static_cast<std::size_t>(ranks_.size()));
     for (const LearntVertex& vertex : checkpoints_->read())
       of_rank.at(static_cast<std::size_t>(blocks_->of(grid_.place_of(vertex.point)))).push_back(vertex);
     std::vector<LearntVertex> own = exchanged(of_rank);
+    const std::vector<LearntVertex> some = sparse_around(blocks_->range_of(ranks_.rank()), grid_, own);
+    for (int rank = 0; rank < ranks_.size(); ++rank)
+      of_rank[static_cast<std::size_t>(rank)] = rank == ranks_.rank()
+                                                    ? std::vector<LearntVertex>()
+                                                    : sparse_around(blocks_->range_of(rank), grid_, some);
+    const std::vector<LearntVertex> elsewhere = exchanged(of_rank);
     of_rank = {};
-    std::vector<std::vector<LearntVertex>> sparse(static_cast<std::size_t>(ranks_.size()), one_per_cube(own));
-    sparse[static_cast<std::size_t>(ranks_.rank())].clear();
-    const std::vector<LearntVertex> elsewhere = exchanged(sparse);
     own.insert(own.end(), elsewhere.begin(), elsewhere.end());
     learner_.learn(own, kReceivedInsertion, nullptr);
     exchange_.emplace(ranks_, learner_, grid_, *blocks_, block());
@@ -218,17 +226,6 @@ class Rounds {
         complete(construction_.mesh(), *exchange_, block(), kSeededRings, learner_.threads(), ranks_);
     num_seeds_ = own.size() + more.inserted;
     exchange_->check();
-  }
-
-  std::vector<LearntVertex> one_per_cube(const std::vector<LearntVertex>& vertices) const {
-    CubeSet seen(grid_);
-    std::vector<LearntVertex> some;
-    for (const LearntVertex& vertex : vertices) {
-      if (seen.has(vertex.point)) continue;
-      seen.insert(grid_.cube_at(vertex.point));
-      some.push_back(vertex);
-    }
-    return some;
   }
 
   // Writes a checkpoint if one is due, and before work that would be lost: the end of a run that is over, and
@@ -297,7 +294,7 @@ class Rounds {
       if (team_.log != nullptr) team_.log->begin_step();
       if (knows_seeds && leaves_) entries = refine_leaves(zone, entries, report);
       add_names(work_in(task, zone, entries, report), left);
-      if (end_ != nullptr && stop_.is_over()) end_->announce();
+      if (end_ != nullptr && concerns_all(stop_.reason())) end_->announce();
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
       exchange_->note_writers(std::move(*zones_), own);

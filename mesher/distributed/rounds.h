@@ -17,7 +17,8 @@
 // Between rounds of R1 to R6 the ranks may write checkpoints (checkpoints.h). A resumed run has the vertices
 // of a checkpoint in place of the seeds, and applies PODM to all cells in its round 0.
 //
-// A limit or a signal that ends the work of one rank in a round soon ends that of all (end_on_all_ranks.h).
+// A signal or a limit, except that of cells, which ends the work of one rank in a round soon ends that of all
+// (end_on_all_ranks.h).
 //
 // After each of these exchanges the ranks compare what they have where they overlap (overlap.h).
 #pragma once

@@ -1,6 +1,10 @@
 #include "distributed/seeding.h"
 
+#include <algorithm>
+#include <bit>
 #include <limits>
+#include <set>
+#include <utility>
 
 namespace podm {
 
@@ -45,6 +49,22 @@ void Seeding::learn(const std::vector<Point>& points, std::vector<CellId>* made)
   std::vector<LearntVertex> changes;
   for (const Point& p : points) changes.push_back({p, VertexKind::kCircumcenter});
   learner_.learn(changes, kSeed, made);
+}
+
+std::vector<LearntVertex> sparse_around(const CubeRange& block, const CubeGrid& grid,
+                                        const std::vector<LearntVertex>& vertices) {
+  std::set<std::pair<int, CubeId>> groups;  // the logarithm of the side, and the first cube
+  std::vector<LearntVertex> some;
+  for (const LearntVertex& vertex : vertices) {
+    CubePlace at = grid.place_of(vertex.point);
+    int rings = 1;  // from the block to the cube
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      rings = std::max({rings, block.low[axis] - at[axis], at[axis] - block.high[axis] + 1});
+    const int log_side = std::bit_width(static_cast<unsigned>(rings)) - 1;
+    for (int& coordinate : at) coordinate = coordinate >> log_side << log_side;
+    if (groups.emplace(log_side, grid.id(at)).second) some.push_back(vertex);
+  }
+  return some;
 }
 
 }  // namespace podm

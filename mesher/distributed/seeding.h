@@ -30,4 +30,9 @@ class Seeding : public VertexSource {
   std::unordered_set<Point, PointHash> sparse_;  // seeds of the constructor
 };
 
+/// Returns some of the vertices, the fewer the farther they are from the block: one of each group of cubes.
+/// A group is one cube beside the block and in it, and has sides of up to its distance elsewhere.
+std::vector<LearntVertex> sparse_around(const CubeRange& block, const CubeGrid& grid,
+                                        const std::vector<LearntVertex>& vertices);
+
 }  // namespace podm

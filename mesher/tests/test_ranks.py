@@ -736,6 +736,7 @@ class EarlyEnds(OnRanks):
     def test_element_limit_is_shared(self):
         self.assert_ended_early(self.mesh(3, *ENDLESS[1:], "--max-elements", 60000, image=ENDLESS[0]), "element limit")
         self.assertLessEqual(self.last_record()["cells"], 60000)
+        self.assertGreater(self.last_record()["cells"], 30000)
 
     @slow
     def test_seeds_are_not_measured_by_one_ranks_share(self):

@@ -62,10 +62,10 @@ inline double draw_stretch(const TimeCosts& costs, std::mt19937_64& random) {
 
 // ---- Shared lines and new memory, during an attempt ----
 //
-// A cache line that all workers write is a section. It charges MachineModel::line_transfer_s to a worker if
-// another one was the last to enter it. Such lines are the mutex of each section, the mutex of the arenas of
-// ids, and the number of cells (StopControl). A conflict takes one transfer: of the lock that another worker
-// holds. The system provides new memory in another section, where each page takes
+// A cache line that all workers write is a section. It charges MachineModel::line_transfer_s to a worker
+// unless it was itself the last to enter. Such lines are the mutex of each section, the mutex of the arenas
+// of ids, and the number of cells (StopControl). A conflict takes one transfer: of the lock that another
+// worker holds. The system provides new memory in another section, where each page takes
 // MachineModel::page_fault_s. Commits share no line (delaunay/commit_order.h).
 
 inline constexpr std::uint64_t kPageBytes = 4096;

@@ -122,7 +122,9 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   schedule(self, kIsInParts ? 0 : work_s + remote.latency_s + remote.network_s + sharing_s);
   if (!is_over()) state.fibre->suspend();
   if (has_failed) {
-    state.overhead.rollback_s += now_s_ - state.since_s;
+    // The seconds in sections are part of the spending already.
+    const double in_sections_s = kIsInParts ? 0 : sharing_s - line_transfer_s_;
+    state.overhead.rollback_s += std::max(0.0, now_s_ - state.since_s - in_sections_s);
   } else {
     spending_.work_s += work_s;
     spending_.remote_memory_s += remote.latency_s;
@@ -151,7 +153,9 @@ double VirtualTime::enter(Section& section, WorkerId self, double after_s, doubl
   return section.free_at_s - now_s_;
 }
 
-// The attempt enters one section after the other at its beginning, as it does stations (remote_memory.h).
+// The attempt enters one section after the other at its beginning, as it does stations (remote_memory.h). It
+// enters the later ones in advance. An attempt that begins afterwards waits for it even where it arrives
+// first.
 double VirtualTime::sharing_seconds(WorkerId self, const SharedUse& use, Outcome outcome) {
   if (line_transfer_s_ == 0 && page_fault_s_ == 0) return 0;
   double seconds = outcome == Outcome::kLockConflict ? line_transfer_s_ : 0;

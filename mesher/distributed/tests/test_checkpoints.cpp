@@ -120,11 +120,29 @@ TEST_F(CheckpointFiles, OfAnEarlierCheckpointNothingIsLeft) {
   EXPECT_EQ(read(3).size(), 10u);
 }
 
+TEST_F(CheckpointFiles, PiecesWithoutTheirTextAreNoCheckpoint) {
+  write(2);
+  const std::vector<LearntVertex> last = read(1);
+  for (int rank = 0; rank < 3; ++rank)
+    write_checkpoint_piece(path_ + "/vertices_2_" + std::to_string(rank) + ".bin", vertices_of(rank, 9));
+  EXPECT_TRUE(are_equal(read(3), last));
+  write(1);
+  EXPECT_EQ(names(), (std::vector<std::string>{"checkpoint.txt", "lock", "vertices_3_0.bin"}));
+  EXPECT_EQ(read(2).size(), 5u);
+}
+
 TEST_F(CheckpointFiles, WhatIsRefusedIsNamed) {
   const auto fault = [&](const std::vector<Fact>& facts = kFacts) {
     return fault_of<InputError>([&] { read(2, facts); });
   };
   EXPECT_THAT(fault(), HasSubstr("saved: the folder has no whole checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  const std::string too_long = folder_ / std::string(1000, 'a');
+  const auto resume = [&](Communication& ranks) {
+    Checkpoints({.folder = too_long, .is_resumed = true}, kFacts, ranks);
+  };
+  EXPECT_THAT(fault_of<InputError>([&] { run_ranks({.num_ranks = 2}, resume); }),
+              HasSubstr("aa/checkpoint.txt: cannot read: "));
   write(2);
   EXPECT_THAT(fault({{"radius", "3 mm"}, kFacts[1]}), HasSubstr("the radius of this run: 2 mm, not 3 mm"));
   EXPECT_THAT(fault({kFacts[0], {"image", "SHA-256 34"}}), HasSubstr("the image of this run"));

@@ -243,6 +243,16 @@ TEST(ResumedRounds, RefineNoMeshThatIsDone) {
   for (const auto& refined : resumed.refined) EXPECT_EQ(refined->refinement.counters.cells_created, 0u);
 }
 
+TEST(ResumedRounds, HaveFewVerticesFarFromTheirBlocks) {
+  const ScratchFolder folder;
+  Case of{"", ball(24, 9), 0.5, 0, 2};
+  { const Ranks begun(of, 1, {}, {.folder = folder / "a", .seconds = 0}); }
+  of.num_ranks = 64;
+  const Ranks resumed(of, 1, {}, {.folder = folder / "a", .seconds = 0, .is_resumed = true});
+  const VertexId num_vertices = resumed.whole()->vertex_bound();
+  for (const auto& refined : resumed.refined) EXPECT_LT(refined->seeds, num_vertices / 5);
+}
+
 TEST(DrawnBlocks, TileSpaceAndAreThinNowAndThen) {
   const CubeGrid grid({{0, 0, 0}, {9.5, 7.5, 3.5}}, 1);
   int num_thin = 0;

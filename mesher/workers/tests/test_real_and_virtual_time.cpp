@@ -216,7 +216,7 @@ struct Asking {
   WorkerId id() const { return self; }
   Outcome attempt() {
     ++num_attempts;
-    return Outcome::kCommitted;
+    return outcome;
   }
   void release() {}
   std::int64_t net_cells() const { return static_cast<std::int64_t>(100 * num_attempts); }
@@ -231,6 +231,7 @@ struct Asking {
   std::uint64_t num_attempts = 0;
   Counters counts = {};
   std::optional<AccessTally> tally = {};
+  Outcome outcome = Outcome::kCommitted;
 };
 
 // Returns the virtual seconds of as many attempts by each of three workers.
@@ -247,6 +248,21 @@ double seconds_of_asking(const MachineModel* machine, int num_attempts, bool ask
 TEST(VirtualTime, OfAMachineWithoutCostsOfSharingIsTheSameToTheBit) {
   const MachineModel none = machine_of_sharing(0, 0);
   EXPECT_EQ(seconds_of_asking(&none, 1000), seconds_of_asking(nullptr, 1000));
+}
+
+TEST(VirtualTime, CountsSecondsOfSharingOnce) {
+  const MachineModel machine = machine_of_sharing(0.25, 0.5);
+  for (const Outcome outcome : {Outcome::kCommitted, Outcome::kLockConflict}) {
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    VirtualTime time(stop, 1, VirtualCost::kMeasured, 1, &machine);
+    Asking worker;
+    worker.outcome = outcome;
+    time.run([&](WorkerId) {
+      for (int i = 0; i < 10; ++i) time.attempt(worker);
+    });
+    EXPECT_GT(time.now_s(), 10 * 4 * 0.5);
+    EXPECT_NEAR(time.busy_s(), time.now_s(), 1e-9);
+  }
 }
 
 // Attempts themselves take less than a microsecond.
