@@ -110,9 +110,13 @@ void check_affine(const LabelImage& image) {
 
 }  // namespace
 
-void check_options(const LabelImage& image, const MeshingOptions& options) {
-  if (image.labels.size() < 2 || image.voxels.size() != image.num_voxels())
+void check_voxels(const LabelImage& image) {
+  if (image.labels.size() < 2 || image.voxels.empty() || image.voxels.size() != image.num_voxels())
     throw InputError("the image has no foreground");
+}
+
+void check_options(const LabelImage& image, const MeshingOptions& options) {
+  check_voxels(image);
   check_options_but_voxels(image, options);
 }
 

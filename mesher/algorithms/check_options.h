@@ -1,10 +1,12 @@
-// Checks the input of mesh_image().
+// Checks the input of public functions.
 #pragma once
 
 #include "podm/mesh_image.h"
 
 namespace podm {
 
+/// Throws InputError unless the image holds voxels and has labels besides the background.
+void check_voxels(const LabelImage& image);
 /// Throws InputError, which names the fault, on options that contradict each other or the image, and on an
 /// image without foreground or with an affine that does not match its voxels.
 void check_options(const LabelImage& image, const MeshingOptions& options);

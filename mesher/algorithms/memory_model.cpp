@@ -25,8 +25,18 @@ std::uint64_t bytes_of_threads(std::uint64_t threads) {
   return threads * kBytesPerWorker + std::min(threads, kMostThreadsThatHold) * kBytesHeldPerThread;
 }
 
-std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads) {
+std::uint64_t bytes_of_bricks(const ImageByBricks& image, int num_ranks) {
+  const std::vector<LabelIndex>& labels = image.label_of_brick;
+  const auto num_mixed = static_cast<double>(std::count(labels.begin(), labels.end(), ImageByBricks::kMixed));
+  const auto num_bricks = static_cast<double>(labels.size());
+  const double read = std::min(1.0, kSharesOfRank / num_ranks + kPagesOfSeeds * kBricksPerPage / num_bricks);
+  return static_cast<std::uint64_t>(kBytesPerBrick * num_bricks + kBytesPerMixedBrick * num_mixed * read);
+}
+
+std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads,
+                              int num_ranks) {
   constexpr std::uint64_t kLittle = 32;  // 1 / kLittle of the limit need not be known exactly
+  if (const ImageByBricks* in_file = by_bricks(image)) return bytes_of_bricks(*in_file, num_ranks);
   const std::uint64_t most = FeatureTransform::most_bytes(image);
   return most <= limit_bytes / kLittle ? most : FeatureTransform::num_bytes(image, threads);
 }

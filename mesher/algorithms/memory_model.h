@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "delaunay/mesh.h"
+#include "image/image_by_bricks.h"
 #include "podm/choices.h"
 #include "podm/label_image.h"
 #include "podm/limits.h"
@@ -27,6 +28,13 @@ inline constexpr double kStoredCellsPerMeshCell = 1.1;
 /// The feature transform takes 0.6 for one organ, 1 to 2 for segmentations, 3 to 4 for small images full of
 /// labels.
 inline constexpr double kTransformBytesPerVoxel = 1;
+/// The transform of an image whose voxels stay in the file takes its table and its masks, and 12 lines of 64
+/// bytes for each brick with surface voxels and the near bricks around it. A rank reads the pages of its
+/// block, of its share of the predicted work, and of covers and zones, as if it had kSharesOfRank blocks, and
+/// those in which its sparse seeds lie. Each of 8 ranks read an image of 60 pages as a whole, and
+/// each of 4 ranks almost all of 702 pages.
+inline constexpr double kBytesPerBrick = 16, kBytesPerMixedBrick = 12 * 64;
+inline constexpr double kSharesOfRank = 3, kPagesOfSeeds = 1000, kBricksPerPage = 16 * 16 * 16;
 
 // ---- Limits ----
 
@@ -49,9 +57,12 @@ inline constexpr double kMostMemoryOfLeaves = 0.5;
 
 /// Returns the bytes that workers on threads take, and that the allocator holds back for them.
 std::uint64_t bytes_of_threads(std::uint64_t threads);
+/// Returns an estimate of the transform's bytes if the voxels stay in the file and each of `num_ranks` ranks
+/// has a transform of its own.
+std::uint64_t bytes_of_bricks(const ImageByBricks& image, int num_ranks);
 /// Returns the bytes that the feature transform will take, or the most it can take if that is a small part of
-/// the limit.
-std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads);
+/// the limit. `num_ranks` as in bytes_of_bricks().
+std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads, int num_ranks);
 /// Returns the bytes that a run may take in addition to image and transform: the requested limit, otherwise
 /// all memory of the machine.
 std::uint64_t memory_of_run(const Limits& limits);

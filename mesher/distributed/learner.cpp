@@ -9,7 +9,6 @@
 #include "delaunay/walk.h"
 #include "geometry/point_hash.h"
 #include "podm/errors.h"
-#include "runtime/first_fault.h"
 #include "runtime/mix.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_sort.h"
@@ -263,13 +262,11 @@ void Learner::learn_on_threads(const Batch& batch, std::size_t begin, std::size_
   constexpr std::size_t kStretch = 32, kLeastPerThread = 2 * kStretch;
   const std::size_t threads = std::min(together_.size(), (end - begin) / kLeastPerThread);
   if (threads < 2) return learn_alone(batch, begin, end);
-  FirstFault fault;
   for (std::size_t t = 0; t < threads; ++t) together_[t]->start_at(alone_->near());
   parallel_for_ranges(end - begin, kStretch, threads,
                       [&](std::size_t from, std::size_t to, std::size_t thread) {
-                        fault.guard([&] { together_[thread]->learn(batch, begin + from, begin + to); });
+                        together_[thread]->learn(batch, begin + from, begin + to);
                       });
-  fault.rethrow();
   Batch rest{batch.changes, {}, batch.logged_kind};
   for (std::size_t t = 0; t < threads; ++t) {
     together_[t]->flush_log();
@@ -298,13 +295,9 @@ std::vector<std::optional<CellId>> Learner::find_cells(
     finders_.push_back(std::make_unique<OnThread<NoLocks>>(mesh_, finders_pool_, 0, nullptr));
   for (const auto& finder : finders_) finder->start_at(alone_->near());
   std::vector<std::optional<CellId>> cells(count);
-  FirstFault fault;
   parallel_for_ranges(count, kStretch, threads_, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    fault.guard([&] {
-      for (std::size_t i = begin; i < end; ++i) cells[i] = finders_[thread]->find_cell(vertices_of(i));
-    });
+    for (std::size_t i = begin; i < end; ++i) cells[i] = finders_[thread]->find_cell(vertices_of(i));
   });
-  fault.rethrow();
   return cells;
 }
 

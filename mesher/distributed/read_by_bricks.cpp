@@ -41,6 +41,18 @@ void for_each_chunk(const LabelImage& grid, const Layers& slab, const Use& use) 
     use(Layers{first, std::min(first + length, slab.end)});
 }
 
+// The memory that a rank takes to read: a chunk with the layers around it, as bytes and as labels, and the
+// labels of bricks of all slabs, before and after they are joined. Those in mixed bricks of a compressed file
+// are counted once they are known.
+std::uint64_t most_bytes_while_read(const VoxelFile& file) {
+  const LabelImage& grid = file.grid();
+  const std::size_t of_layer = 4 * unsigned_of(grid.size[0]) * unsigned_of(grid.size[1]);
+  const std::size_t voxels = std::min(grid.num_voxels(), std::max(kChunk, of_layer) + 3 * of_layer);
+  const std::size_t copies = file.is_compressed() ? 2 : 1;
+  return voxels * (copies * bytes_of(file.type()) + sizeof(LabelIndex)) +
+         2 * sizeof(LabelIndex) * BrickGrid(grid.size).count();
+}
+
 // Slices of a file, which are read from front to back.
 class Slices {
  public:
@@ -306,6 +318,7 @@ std::shared_ptr<const ImageByBricks> image_of(LabelImage&& grid, std::shared_ptr
                                               const std::vector<Bytes>& slabs) {
   auto image = std::make_shared<ImageByBricks>();
   static_cast<LabelImage&>(*image) = std::move(grid);
+  image->path = file->path();
   Slab sum{
       .label_of_brick = {},
       .mixed = {},
@@ -367,8 +380,10 @@ bool can_stay_in_file(const LabelSelection& selection, const MeshingOptions& opt
 
 std::shared_ptr<const LabelImage> read_by_bricks(const std::shared_ptr<const VoxelFile>& file,
                                                  const LabelSelection& selection, int threads,
-                                                 SharedValue<LabelImage>& shared, Communication& ranks) {
+                                                 std::uint64_t most_bytes, SharedValue<LabelImage>& shared,
+                                                 Communication& ranks) {
   expect_one_file(*file, ranks);
+  do_collectively([&] { check_room(file->path(), most_bytes_while_read(*file), most_bytes); }, ranks);
   const int num_layers = BrickGrid(file->grid().size).size()[2];
   const Layers own = !file->is_compressed() ? layers_of(ranks.rank(), ranks.size(), num_layers)
                                             : Layers{0, ranks.rank() == 0 ? num_layers : 0};

@@ -315,14 +315,10 @@ class Rounds {
   template <class Work>
   void for_each(std::size_t count, const Work& work) const {
     constexpr std::size_t kLength = 1 << 10;
-    FirstFault fault;
     parallel_for_ranges(count, kLength, learner_.threads(),
                         [&](std::size_t begin, std::size_t end, std::size_t) {
-                          fault.guard([&] {
-                            for (std::size_t i = begin; i < end; ++i) work(i);
-                          });
+                          for (std::size_t i = begin; i < end; ++i) work(i);
                         });
-    fault.rethrow();
   }
 
   // A poor cell whose ball reaches beyond the known cubes may be absent here. R7 does not try it.

@@ -83,21 +83,17 @@ std::vector<Bytes> VertexExchange::answers_to(const std::vector<Bytes>& asked) c
   const auto by_cube = [](const InCube& a, const InCube& b) { return a.cube < b.cube; };
   parallel_sort(vertices.begin(), vertices.end(), learner_.threads(), by_cube);
   std::vector<Bytes> messages(asked.size());
-  FirstFault fault;
   parallel_for(asked.size(), learner_.threads(), [&](std::size_t rank, std::size_t) {
-    fault.guard([&] {
-      if (cubes_for[rank].empty()) return;
-      std::vector<SentVertex> answer;
-      for (const CubeId cube : cubes_for[rank]) {
-        const auto [first, last] =
-            std::equal_range(vertices.begin(), vertices.end(), InCube{cube, {}}, by_cube);
-        for (auto it = first; it != last; ++it) answer.push_back(it->vertex);
-      }
-      append(messages[rank], cubes_for[rank]);
-      append(messages[rank], answer);
-    });
+    if (cubes_for[rank].empty()) return;
+    std::vector<SentVertex> answer;
+    for (const CubeId cube : cubes_for[rank]) {
+      const auto [first, last] =
+          std::equal_range(vertices.begin(), vertices.end(), InCube{cube, {}}, by_cube);
+      for (auto it = first; it != last; ++it) answer.push_back(it->vertex);
+    }
+    append(messages[rank], cubes_for[rank]);
+    append(messages[rank], answer);
   });
-  fault.rethrow();
   return messages;
 }
 

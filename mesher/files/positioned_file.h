@@ -17,10 +17,19 @@ class PositionedFile {
 
   /// Reads exactly `size` bytes from `offset` on.
   void read(void* to, std::size_t size, std::uint64_t offset) const;
+  /// Throws if size or time of the file differ from those at the beginning.
+  void expect_unchanged() const;
 
  private:
+  struct State {
+    std::int64_t size, seconds, nanoseconds;
+    friend bool operator==(const State&, const State&) = default;
+  };
+  State state() const;
+
   std::string path_;
   int file_;
+  State at_first_{};
 };
 
 }  // namespace podm

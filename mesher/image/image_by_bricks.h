@@ -22,6 +22,7 @@ struct ImageByBricks : LabelImage {
   /// Outside the image everything is background.
   static constexpr LabelIndex kMixed = 0xffff;
 
+  std::string path;                        ///< of the file
   std::vector<LabelIndex> label_of_brick;  ///< by position in BrickGrid
   std::vector<std::uint64_t> voxels_of_label;
   std::array<int, 3> low{}, high{};  ///< the first and the last foreground voxel along each axis
@@ -33,7 +34,8 @@ struct ImageByBricks : LabelImage {
   std::function<LabelImage(const Voxel& low, const Voxel& high)> read;
 };
 
-/// Null if the image holds its voxels.
+/// Null if the image holds its voxels. Public functions refuse every other image that has none, as this
+/// function cannot.
 inline const ImageByBricks* by_bricks(const LabelImage& image) {
   return image.voxels.empty() ? static_cast<const ImageByBricks*>(&image) : nullptr;
 }

@@ -110,7 +110,8 @@ class Blocks {
 
 // Throws InputError that names the first voxel whose value is not a label. There must be such a voxel.
 template <class Voxel>
-[[noreturn]] void refuse_first_without_label(const VoxelArray& array, const std::string& path) {
+[[noreturn]] void refuse_first_without_label(const VoxelArray& array, const std::string& path,
+                                             const podm::Voxel& first) {
   for (int k = 0; k < array.size[2]; ++k)
     for (int j = 0; j < array.size[1]; ++j)
       for (int i = 0; i < array.size[0]; ++i) {
@@ -118,9 +119,9 @@ template <class Voxel>
         const auto voxel =
             voxel_at<Voxel>(first_of(array) + i * strides[0] + j * strides[1] + k * strides[2]);
         if (is_label(voxel)) continue;
-        refuse(path, "a label image is needed: voxel (" + std::to_string(i) + ", " + std::to_string(j) +
-                         ", " + std::to_string(k) + ") is " + std::to_string(voxel) +
-                         ", no label (an integer, 0 to 2^32 - 1)");
+        refuse(path, "a label image is needed: voxel (" + std::to_string(first.i + i) + ", " +
+                         std::to_string(first.j + j) + ", " + std::to_string(first.k + k) + ") is " +
+                         std::to_string(voxel) + ", no label (an integer, 0 to 2^32 - 1)");
       }
   refuse(path, "its voxels changed during reading");
 }
@@ -210,7 +211,8 @@ class Positions {
 
 template <class Voxel>
 std::vector<std::uint32_t> different_values(const VoxelArray& array, const std::string& path,
-                                            std::size_t num_voxels, std::size_t threads) {
+                                            const podm::Voxel& first, std::size_t num_voxels,
+                                            std::size_t threads) {
   std::vector<VoxelSet<Voxel>> met(threads);
   if (is_dense(array)) {
     parallel_for_ranges(num_voxels, kChunk, threads,
@@ -226,9 +228,9 @@ std::vector<std::uint32_t> different_values(const VoxelArray& array, const std::
   }
   std::set<std::uint32_t> values;
   for (const VoxelSet<Voxel>& set : met) {
-    if (set.has_other()) refuse_first_without_label<Voxel>(array, path);
+    if (set.has_other()) refuse_first_without_label<Voxel>(array, path, first);
     set.for_each([&](Voxel voxel) {
-      if (!is_label(voxel)) refuse_first_without_label<Voxel>(array, path);
+      if (!is_label(voxel)) refuse_first_without_label<Voxel>(array, path, first);
       values.insert(static_cast<std::uint32_t>(voxel));
     });
   }
@@ -254,8 +256,10 @@ void index_range(const char* array, std::size_t begin, std::size_t end, Position
 }
 
 template <class Voxel>
-void index(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image) {
-  const std::vector<std::uint32_t> values = different_values<Voxel>(array, path, image.num_voxels(), threads);
+void index(const VoxelArray& array, const std::string& path, const podm::Voxel& first, std::size_t threads,
+           LabelImage& image) {
+  const std::vector<std::uint32_t> values =
+      different_values<Voxel>(array, path, first, image.num_voxels(), threads);
   for (const std::uint32_t value : values) image.labels.push_back({value, {}});
   std::vector<Positions<Voxel>> positions(threads, Positions<Voxel>(values));
   parallel_resize(image.voxels, image.num_voxels(), threads);
@@ -277,8 +281,10 @@ void index(const VoxelArray& array, const std::string& path, std::size_t threads
 
 }  // namespace
 
-void index_voxels(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image) {
-  with_voxel_type(array.type, [&](auto voxel) { index<decltype(voxel)>(array, path, threads, image); });
+void index_voxels(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image,
+                  const Voxel& first) {
+  with_voxel_type(array.type,
+                  [&](auto voxel) { index<decltype(voxel)>(array, path, first, threads, image); });
 }
 
 }  // namespace podm

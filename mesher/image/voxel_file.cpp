@@ -77,9 +77,7 @@ LabelImage VoxelFile::labelled(const Voxel& low, const Voxel& high, std::vector<
   LabelImage part = grid_;
   part.warnings.clear();
   part.size = {raw.size[0], raw.size[1], raw.size[2]};
-  const std::string place = path() + ", counted from voxel (" + std::to_string(low.i) + ", " +
-                            std::to_string(low.j) + ", " + std::to_string(low.k) + ")";
-  index_voxels(array_of(raw), place, threads, part);
+  index_voxels(array_of(raw), path(), threads, part, low);
   return part;
 }
 
@@ -97,6 +95,7 @@ std::vector<unsigned char> VoxelFile::read_bytes(const Voxel& low, const Voxel& 
   for (int k = low.k; k < (has_slices ? low.k + 1 : high.k); ++k)
     for (int j = low.j; j < (has_rows ? low.j + 1 : high.j); ++j, at += length)
       file_->read(bytes.data() + at, length, head_.voxels.offset + voxel * grid_.index(low.i, j, k));
+  file_->expect_unchanged();
   return bytes;
 }
 

@@ -27,7 +27,8 @@ class VoxelFile {
   bool is_compressed() const { return head_.voxels.is_compressed; }
 
   /// Returns the voxels from `low` to `high`, which is excluded, labelled by value. They must not be
-  /// compressed. Any thread may call it. Throws InputError if a voxel is no label or cannot be read.
+  /// compressed. Any thread may call it. Throws InputError if a voxel is no label or cannot be read, or if
+  /// the file has changed since it was opened.
   LabelImage read(const Voxel& low, const Voxel& high, std::size_t threads) const;
 
  private:

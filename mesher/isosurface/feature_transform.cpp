@@ -21,8 +21,6 @@ namespace {
 
 using Layout = LayoutOfBrick;
 
-// Lines that a mixed brick takes with its labels and with the near bricks around it, on average.
-constexpr std::size_t kLinesOfMixed = 12;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const LabelImage& checked(const LabelImage& image) {
@@ -45,11 +43,6 @@ std::size_t most_lines(const LabelImage& image, const BrickGrid& bricks) {
   constexpr std::size_t kMostNumber = 0xfffffffe, kLinesOfLabels = 2;
   const std::size_t of_brick = Layout::kMostLines + (by_bricks(image) != nullptr ? kLinesOfLabels : 0);
   return std::min(kMostNumber, Layout::in_lines(bricks.count()) + of_brick * bricks.count());
-}
-
-std::size_t num_mixed(const ImageByBricks& image) {
-  return static_cast<std::size_t>(
-      std::count(image.label_of_brick.begin(), image.label_of_brick.end(), ImageByBricks::kMixed));
 }
 
 void mark(const LabelImage& image, const BrickGrid& bricks, std::size_t threads, SurfaceMasks& masks) {
@@ -100,8 +93,6 @@ std::uint64_t FeatureTransform::bytes_read() const { return unread_ != nullptr ?
 
 std::uint64_t FeatureTransform::num_bytes(const LabelImage& image, int threads) {
   const BrickGrid bricks(checked(image).size);
-  if (const ImageByBricks* in_file = by_bricks(image))
-    return bytes_of(bricks, kLinesOfMixed * num_mixed(*in_file));
   const std::size_t used = num_threads(threads);
   SurfaceMasks masks(bricks.count());
   mark_surface(image, bricks, used, masks);

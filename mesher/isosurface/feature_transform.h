@@ -88,7 +88,7 @@ class FeatureTransform {
   FeatureTransform(const LabelImage& image, int threads);
   ~FeatureTransform();
   /// The memory that the transform of an image takes while it is made, in bytes. Counting takes a tenth of
-  /// the transform's time. If the voxels stay in the file, an estimate for all bricks.
+  /// the transform's time. The image must hold its voxels.
   static std::uint64_t num_bytes(const LabelImage& image, int threads);
   /// The largest num_bytes() of any image of this size.
   static std::uint64_t most_bytes(const LabelImage& image);

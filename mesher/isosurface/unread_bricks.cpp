@@ -4,6 +4,9 @@
 #include <new>
 #include <vector>
 
+#include "podm/errors.h"
+#include "runtime/mix.h"
+
 namespace podm {
 
 namespace {
@@ -41,6 +44,7 @@ class UnreadBricks::Page {
         writer_(part_, bricks_, masks_, of.surroundings_) {
     mark_surface(part_, bricks_, 1, masks_);
     forget_rim(of.bricks_);
+    expect_unchanged(of.image_, of.bricks_);
   }
 
   std::uint64_t mask(const Voxel& brick) const { return masks_[index(brick)]; }
@@ -82,13 +86,27 @@ class UnreadBricks::Page {
   }
 
   // The outermost bricks lack neighbors that were not read, except where the image ends.
-  void forget_rim(const BrickGrid& all) {
-    const auto is_rim = [&](std::size_t axis, int at) {
+  bool is_rim(const Voxel& brick, const BrickGrid& all) const {
+    const auto is_outermost = [&](std::size_t axis, int at) {
       return (at == read_.low[axis] && at > 0) ||
              (at == read_.high[axis] - 1 && read_.high[axis] < all.size()[axis]);
     };
+    return is_outermost(0, brick.i) || is_outermost(1, brick.j) || is_outermost(2, brick.k);
+  }
+  void forget_rim(const BrickGrid& all) {
     read_.for_each([&](const Voxel& brick) {
-      if (is_rim(0, brick.i) || is_rim(1, brick.j) || is_rim(2, brick.k)) masks_[index(brick)] = 0;
+      if (is_rim(brick, all)) masks_[index(brick)] = 0;
+    });
+  }
+  // The table and the words of other pages rest on the labels of bricks that were found first.
+  void expect_unchanged(const ImageByBricks& image, const BrickGrid& all) const {
+    read_.for_each([&](const Voxel& brick) {
+      if (is_rim(brick, all)) return;
+      const Voxel at = here(brick);
+      const LabelIndex label =
+          mask(brick) != 0 ? ImageByBricks::kMixed : part_.voxels[part_.index(4 * at.i, 4 * at.j, 4 * at.k)];
+      if (label != image.label_of_brick[all.index(brick.i, brick.j, brick.k)])
+        throw InputError(image.path + ": its voxels changed during the run");
     });
   }
 
@@ -137,7 +155,7 @@ UnreadBricks::Range UnreadBricks::page_of(std::size_t index) const {
 
 Brick UnreadBricks::read(std::size_t index) {
   const Range page = page_of(index);
-  const std::size_t number = bricks_.index(page.low[0], page.low[1], page.low[2]) / kPage;
+  const std::uint64_t number = mix(bricks_.index(page.low[0], page.low[1], page.low[2]));
   const std::scoped_lock lock(mutexes_[number % mutexes_.size()]);
   if (Brick(words_[index]).is_unread()) read_page(page);
   return Brick(words_[index]);

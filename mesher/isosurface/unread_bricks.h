@@ -42,7 +42,7 @@ class UnreadBricks {
   HugeArray<std::uint64_t>& words_;
   const std::size_t first_line_;
   std::atomic<std::size_t> next_line_;
-  std::array<std::mutex, 64> mutexes_;  // by number of the page
+  std::array<std::mutex, 64> mutexes_;  // by a hash of the page
 };
 
 }  // namespace podm

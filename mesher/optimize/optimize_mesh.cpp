@@ -102,7 +102,6 @@ class Optimization {
     return hash_and_visit([](CellId) {});
   }
 
-  // The threads of a parallel loop must not throw, and therefore allocate nothing.
   Entries find_bad_cells(std::uint64_t& hash_of_interfaces) const {
     std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
     hash_of_interfaces = hash_and_visit([&](CellId c) {

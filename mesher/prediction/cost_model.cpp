@@ -7,12 +7,12 @@
 #include <numeric>
 #include <utility>
 
+#include "algorithms/check_options.h"
 #include "algorithms/memory_model.h"
 #include "algorithms/team_size.h"
 #include "image/image_by_bricks.h"
 #include "image/interface_sides.h"
 #include "image/rows_of_image.h"
-#include "isosurface/feature_transform.h"
 #include "runtime/parallel_for.h"
 #include "sizing/default_sizes.h"
 #include "sizing/make_size_grid.h"
@@ -62,6 +62,8 @@ double CostModel::area_along_mm2(std::size_t axis, std::size_t lag) const {
   auto& known = area_along_mm2_[axis][lag];
   if (known) return *known;
   const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
+  // The sides between neighbors stand for those at all lags. Parts that are thinner than samples then count,
+  // so the cells of such parts are overestimated.
   if (const ImageByBricks* in_file = by_bricks(image_))
     return static_cast<double>(in_file->sides[axis]) * face_mm2;
   const std::uint64_t sides = sum_over_rows(
@@ -196,10 +198,12 @@ double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius
 }
 
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
+  check_voxels(image);
   return estimate(image, options, make_size_grid(image, options.sizes, loop_threads(options.team)).get());
 }
 
-Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid) {
+Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid,
+                  int num_ranks) {
   double cells = static_cast<double>(options.sizes.target_elements), delta_mm = options.sizes.delta_mm;
   if (options.sizes.target_elements == 0) {
     SizeOptions sizes = options.sizes;
@@ -207,9 +211,11 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options, const 
     delta_mm = sizes.delta_mm = delta_mm_for(image, sizes, model.census());
     cells = model.cells(sizes);
   }
+  const ImageByBricks* in_file = by_bricks(image);
   const double bytes_of_image =
-      by_bricks(image) != nullptr
-          ? static_cast<double>(FeatureTransform::num_bytes(image, 1))
+      in_file != nullptr
+          ? static_cast<double>(sizeof(LabelIndex) * in_file->label_of_brick.size() +
+                                bytes_of_bricks(*in_file, num_ranks))
           : static_cast<double>(image.num_voxels()) * (sizeof(LabelIndex) + kTransformBytesPerVoxel);
   return {cells,
           cells * kPeakBytesPerMeshCell + bytes_of_image +

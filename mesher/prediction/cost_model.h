@@ -81,7 +81,9 @@ class CostModel {
 };
 
 /// As estimate() with the options alone, if the grid of the options' sizes already exists; null if there is
-/// no grid.
-Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid);
+/// no grid. The image may stay in its file. Its memory is then that of a rank if each of `num_ranks` ranks
+/// reads what it needs.
+Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid,
+                  int num_ranks = 1);
 
 }  // namespace podm

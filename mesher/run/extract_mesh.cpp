@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <new>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -102,7 +101,6 @@ class Extractor {
       });
       mesh_.release_cells(first, last);
     });
-    if (is_out_of_memory_) throw std::bad_alloc();
     write_vertices();
     number_vertices_of_cells();
     return write_facets();
@@ -168,11 +166,7 @@ class Extractor {
     };
     std::array<VertexId, 3> vertices{vertex(0), vertex(1), vertex(2)};
     if (is_mirrored_) std::swap(vertices[1], vertices[2]);
-    try {
-      facets.push_back({vertices, labels});
-    } catch (const std::bad_alloc&) {  // must not leave the thread
-      is_out_of_memory_ = true;
-    }
+    facets.push_back({vertices, labels});
   }
 
   void write_vertices() {
@@ -246,7 +240,6 @@ class Extractor {
   HugeArray<LabelIndex> labels_;  // of the store's cells; they outlive the cells and are denser in memory
   std::vector<std::uint32_t> out_ids_;  // by id in the store: unused or used, then the position in the output
   std::vector<std::vector<BoundaryFacet>> facets_;  // by chunk of cells
-  std::atomic<bool> is_out_of_memory_ = false;
 };
 
 }  // namespace

@@ -82,6 +82,7 @@ MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
 }
 
 TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space) {
+  check_voxels(image);
   const std::unique_ptr<Mesh> refined = replay(log);
   const Isosurface isosurface(image, 0, weights_of(image, log.head.smoothing_mm, 0));
   std::uint64_t facets_off_isosurface = 0;

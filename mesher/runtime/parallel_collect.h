@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "runtime/first_fault.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -16,11 +15,9 @@ template <class Item, class Collect>
 std::vector<Item> parallel_collect(std::size_t size, std::size_t threads, const Collect& collect) {
   constexpr std::size_t kLength = 1 << 12;
   std::vector<std::vector<Item>> lists((size + kLength - 1) / kLength);
-  FirstFault fault;
   parallel_for_ranges(size, kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-    fault.guard([&] { collect(begin, end, lists[begin / kLength]); });
+    collect(begin, end, lists[begin / kLength]);
   });
-  fault.rethrow();
   std::vector<Item> all;
   std::size_t num_items = 0;
   for (const auto& list : lists) num_items += list.size();

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/first_fault.h"
 #include "runtime/virtual_threads.h"
 
 namespace podm {
@@ -17,18 +18,22 @@ inline std::size_t num_threads(int asked) {
 }
 
 /// Calls work(i, thread) once for each i < count, on `threads` threads numbered from 0, which is the
-/// caller's. A free thread takes the next i. `work` must not throw. The threads of a rank in virtual time are
-/// virtual.
+/// caller's. A free thread takes the next i. Throws the first exception that work() throws, once all threads
+/// have ended. The threads of a rank in virtual time are virtual.
 template <class Work>
 void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
   if (VirtualThreads* const here = VirtualThreads::current()) return here->loop(count, threads, work);
   std::atomic<std::size_t> next{0};
+  FirstFault fault;
   const auto run = [&](std::size_t thread) {
-    for (std::size_t i = next++; i < count; i = next++) work(i, thread);
+    for (std::size_t i = next++; i < count; i = next++) fault.guard([&] { work(i, thread); });
   };
-  std::vector<std::jthread> others;
-  for (std::size_t t = 1; t < std::min(threads, count); ++t) others.emplace_back(run, t);
-  run(0);
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t t = 1; t < std::min(threads, count); ++t) others.emplace_back(run, t);
+    run(0);
+  }
+  fault.rethrow();
 }
 
 /// Does the same for consecutive ranges of [0, size): work(begin, end, thread). All have the given length

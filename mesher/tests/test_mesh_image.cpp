@@ -9,6 +9,7 @@
 #include "image/foreground.h"
 #include "image/working_frame.h"
 #include "podm/mesh_image.h"
+#include "podm/operation_log.h"
 #include "tests/images.h"
 
 namespace podm::test {
@@ -253,6 +254,13 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
     MeshingOptions never = radius(1);
     never.sizes.target_meshes = meshes;
     EXPECT_THROW(mesh_image(image, never), InputError) << meshes;
+  }
+  LabelImage without_voxels = image;
+  without_voxels.voxels.clear();
+  for (const LabelImage& empty : {LabelImage{}, without_voxels}) {
+    EXPECT_THROW(mesh_image(empty, radius(1)), InputError);
+    EXPECT_THROW(estimate(empty, radius(1)), InputError);
+    EXPECT_THROW(replay_operations(empty, OperationLog{}, Space::kRas), InputError);
   }
   MeshingOptions absent = radius(1);
   absent.sizes.radius_of_mm[77] = 1;

@@ -435,7 +435,7 @@ class ByBricks(OnRanks):
         voxels[-1] = 0xff  # -1
         faulty = write_nifti(self.folder / "faulty.nii", bytes(voxels), datatype=INT8)
         short = write_nifti(self.folder / "short.nii", bytes(voxels[:-1]))
-        for image, *words in (faulty, "-1", "no label"), (short, "truncated"):
+        for image, *words in (faulty, "(11, 11, 11) is -1", "no label"), (short, "truncated"):
             with self.subTest(image=image.name):
                 process = self.mesh(2, image=image)
                 self.assert_exit(process, 2)

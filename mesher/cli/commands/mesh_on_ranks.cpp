@@ -133,7 +133,7 @@ class Run {
     std::array<std::uint64_t, 1> num_whole{file == nullptr ? 1u : 0u};
     ranks_.sum(num_whole);
     if (num_whole[0] == 0) {
-      image_ = read_by_bricks(file, selection, threads, shared_.image, ranks_);
+      image_ = read_by_bricks(file, selection, threads, bytes_for_image(limit_bytes), shared_.image, ranks_);
       return;
     }
     const auto make = [&] {

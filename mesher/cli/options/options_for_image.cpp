@@ -13,6 +13,7 @@
 #include "distributed/memory_of_ranks.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "prediction/cost_model.h"
 #include "sizing/make_size_grid.h"
 #include "smoothing/smooth_interfaces.h"
 
@@ -44,7 +45,10 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 // estimate bounds both.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
-  const Estimate expected = of_image(image_path, [&] { return estimate(image, options); });
+  const Estimate expected = of_image(image_path, [&] {
+    const auto grid = make_size_grid(image, options.sizes, loop_threads(options.team));
+    return estimate(image, options, grid.get(), num_ranks);
+  });
   const double mesh_bytes = expected.cells * kPeakBytesPerMeshCell,
                others = expected.memory_bytes - mesh_bytes;
   const double memory_bytes = std::isfinite(mesh_bytes) ? others + mesh_bytes / num_ranks : mesh_bytes;
@@ -72,8 +76,9 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
 
 // Returns the rest of the limit after program, image, transform and local sizes.
 std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image_path,
-                             const LabelImage& image, const MeshingOptions& options) {
-  std::uint64_t others = resident_bytes() + transform_bytes(image, limit_bytes, loop_threads(options.team)) +
+                             const LabelImage& image, const MeshingOptions& options, int num_ranks) {
+  std::uint64_t others = resident_bytes() +
+                         transform_bytes(image, limit_bytes, loop_threads(options.team), num_ranks) +
                          bytes_of_size_grid(image, options.sizes) + kBytesOfOutput;
   if (options.smoothing_mm > 0) others += image.num_voxels() * kBytesPerSmoothedVoxel;
   if (others + kLeastBytesForMesh <= limit_bytes) return limit_bytes - others;
@@ -112,7 +117,8 @@ MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& i
                                  std::uint64_t limit_bytes, int num_ranks) {
   MeshingOptions options = options_as_given(command, image, limit_bytes);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes, num_ranks);
-  options.limits.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image, options);
+  options.limits.max_memory_bytes =
+      bytes_for_mesh(limit_bytes, command.image.path, image, options, num_ranks);
   return options;
 }
 

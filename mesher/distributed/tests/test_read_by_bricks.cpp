@@ -3,11 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <filesystem>
+#include <new>
+
+#include "algorithms/memory_model.h"
 #include "distributed/image_digest.h"
 #include "distributed/in_process_ranks.h"
 #include "distributed/mesh_image_on_ranks.h"
+#include "distributed/rank_failure.h"
 #include "image/foreground.h"
 #include "image/image_by_bricks.h"
+#include "image/interface_sides.h"
+#include "image/rows_of_image.h"
 #include "tests/fault_of.h"
 #include "tests/images.h"
 #include "tests/scratch_folder.h"
@@ -23,6 +31,18 @@ LabelImage scene() {
   });
 }
 
+std::uint64_t sides_along(const LabelImage& image, std::size_t axis) {
+  return sum_over_rows(image, 1, std::uint64_t{0},
+                       [&](std::uint64_t& sum, int j, int k) { sum += count_sides(image, axis, 1, j, k); });
+}
+
+MeshingOptions options_of_meshes() {
+  MeshingOptions options;
+  options.sizes.radius_mm = 3.5;
+  options.team.threads = 2;
+  return options;
+}
+
 class ReadByBricks : public testing::TestWithParam<std::tuple<int, const char*>> {
  protected:
   ReadByBricks() { write_nifti(scene(), path_); }
@@ -34,7 +54,7 @@ class ReadByBricks : public testing::TestWithParam<std::tuple<int, const char*>>
     run_ranks({.num_ranks = num_ranks_, .one_at_a_time = true}, [&](Communication& ranks) {
       const std::shared_ptr<const VoxelFile> file = VoxelFile::open(path_);
       ASSERT_NE(file, nullptr);
-      use(*read_by_bricks(file, selection, 1 + ranks.rank() % 2, shared, ranks), ranks);
+      use(*read_by_bricks(file, selection, 1 + ranks.rank() % 2, ~std::uint64_t{0}, shared, ranks), ranks);
     });
   }
 
@@ -62,13 +82,14 @@ TEST_P(ReadByBricks, FindsWhatTheWholeImageHas) {
       EXPECT_EQ(foreground_bounds(image).low, foreground_bounds(whole).low);
       EXPECT_EQ(foreground_bounds(image).high, foreground_bounds(whole).high);
       EXPECT_EQ(digest_of(image, 1), digest_of(whole, 2));
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(by_bricks(image)->sides[axis], sides_along(whole, axis));
     });
   }
 }
 
 TEST_P(ReadByBricks, MakesTheMeshOfTheWholeImage) {
-  MeshingOptions options;
-  options.sizes.radius_mm = 3.5;
+  MeshingOptions options = options_of_meshes();
   options.team.threads = 1;
   const LabelImage whole = read_image(path_, {}, 1);
   std::vector<std::uint64_t> hashes;
@@ -86,6 +107,64 @@ TEST_P(ReadByBricks, MakesTheMeshOfTheWholeImage) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+// Loops of threads ask for the first pages.
+TEST_P(ReadByBricks, EndsInAnErrorIfAPageCannotBeRead) {
+  const auto mesh_with = [&](int good_reads, const auto& fail) {
+    std::atomic<int> num_reads = 0;
+    read({}, [&](const LabelImage& image, Communication& ranks) {
+      ImageByBricks failing = *by_bricks(image);
+      failing.read = [&](const Voxel& low, const Voxel& high) {
+        if (num_reads++ >= good_reads) fail();
+        return by_bricks(image)->read(low, high);
+      };
+      mesh_image_on_ranks(failing, options_of_meshes(), ranks);
+    });
+  };
+  for (const int good_reads : {0, 1}) {
+    const std::string fault =
+        fault_of<InputError>([&] { mesh_with(good_reads, [] { throw InputError("scene.nii: gone"); }); });
+    EXPECT_TRUE(fault.starts_with("rank ")) << fault;
+    EXPECT_TRUE(fault.ends_with(": scene.nii: gone")) << fault;
+    if (num_ranks_ == 1) continue;  // a single rank that refines without memory ends as at a limit
+    EXPECT_THROW(mesh_with(good_reads, [] { throw std::bad_alloc(); }), OutOfMemory);
+  }
+}
+
+// The voxels of a compressed file are in memory.
+TEST_P(ReadByBricks, RefusesAFileThatChangesDuringTheRun) {
+  if (path_.ends_with(".gz")) return;
+  LabelImage other = scene();
+  std::reverse(other.voxels.begin(), other.voxels.end());
+  for (const bool is_time_kept : {false, true}) {
+    write_nifti(scene(), path_);
+    const auto time = std::filesystem::last_write_time(path_);
+    const std::string fault = fault_of<InputError>([&] {
+      read({}, [&](const LabelImage& image, Communication& ranks) {
+        if (ranks.rank() == 0) {
+          write_nifti(other, folder_ / "other.nii");
+          std::filesystem::copy_file(folder_ / "other.nii", path_,
+                                     std::filesystem::copy_options::overwrite_existing);
+          std::filesystem::last_write_time(path_, is_time_kept ? time : time + std::chrono::seconds(1));
+        }
+        mesh_image_on_ranks(image, options_of_meshes(), ranks);
+      });
+    });
+    EXPECT_NE(fault.find(path_ + (is_time_kept ? ": its voxels" : ": the file") + " changed during the run"),
+              std::string::npos)
+        << fault;
+  }
+}
+
+TEST_P(ReadByBricks, RefusesAnImageForWhichThereIsNoRoom) {
+  SharedValue<LabelImage> shared;
+  const auto read_with = [&](std::uint64_t most_bytes) {
+    run_ranks({.num_ranks = num_ranks_}, [&](Communication& ranks) {
+      read_by_bricks(VoxelFile::open(path_), {}, 1, most_bytes, shared, ranks);
+    });
+  };
+  EXPECT_NE(fault_of<InputError>([&] { read_with(1000); }).find("its voxels take"), std::string::npos);
+}
+
 TEST_P(ReadByBricks, RefusesWhatNoRankCanRead) {
   LabelSelection absent;
   absent.keep.emplace_back(77, 77);
@@ -97,6 +176,18 @@ TEST_P(ReadByBricks, RefusesWhatNoRankCanRead) {
 
 INSTANTIATE_TEST_SUITE_P(Ranks, ReadByBricks,
                          testing::Combine(testing::Values(1, 2, 7), testing::Values("nii", "nii.gz")));
+
+TEST(BytesOfBricks, AreLessOnMoreRanks) {
+  ImageByBricks image;
+  image.label_of_brick.assign(1 << 24, kBackground);
+  const std::uint64_t of_table = bytes_of_bricks(image, 1);
+  EXPECT_EQ(bytes_of_bricks(image, 64), of_table);
+  std::fill_n(image.label_of_brick.begin(), 1 << 22, ImageByBricks::kMixed);
+  const std::uint64_t of_all = bytes_of_bricks(image, 1) - of_table;
+  EXPECT_EQ(bytes_of_bricks(image, 2) - of_table, of_all);
+  EXPECT_LT(bytes_of_bricks(image, 64) - of_table, of_all / 3);
+  EXPECT_GT(bytes_of_bricks(image, 64) - of_table, of_all / 64);
+}
 
 TEST(VoxelFile, IsNotForImagesThatMustBeReadAsAWhole) {
   EXPECT_EQ(VoxelFile::open("phantom:spheres@32"), nullptr);

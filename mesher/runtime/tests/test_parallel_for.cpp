@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <numeric>
 #include <thread>
 
@@ -21,6 +22,21 @@ TEST(ParallelFor, RunsEveryRoundOnceOnItsThreads) {
       EXPECT_EQ(std::accumulate(rounds_of.begin(), rounds_of.end(), std::size_t{0}), count);
     }
   }
+}
+
+void expect_first_fault() {
+  EXPECT_THROW(parallel_for(1000, 4,
+                            [](std::size_t i, std::size_t) {
+                              if (i % 7 == 3) throw std::bad_alloc();
+                            }),
+               std::bad_alloc);
+}
+
+TEST(ParallelFor, ThrowsWhatAnyThreadThrew) {
+  expect_first_fault();
+  VirtualThreads threads;
+  const VirtualThreads::Scope scope(threads);
+  expect_first_fault();
 }
 
 void work_for(double seconds) {
