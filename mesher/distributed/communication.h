@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -56,6 +57,11 @@ class Communication {
   virtual void announce(std::uint64_t value) = 0;
   /// Returns the largest value that has been announced by this rank or has reached it; 0 if there is none.
   virtual std::uint64_t announced() = 0;
+
+  /// From now on calls look() now and then while this rank waits in a collective that other ranks have not
+  /// called yet, on the thread that waits; an empty function: nothing. look() may only use announcements.
+  /// Ranks of one process never call it, because a signal reaches all of them.
+  virtual void look_while_waiting(std::function<void()> /*look*/) {}
 
   /// Returns this rank's clock, in seconds since an arbitrary moment: wall time or virtual time.
   virtual double seconds() const = 0;

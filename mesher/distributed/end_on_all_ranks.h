@@ -4,7 +4,8 @@
 // workers have stopped. A rank that has made its share of the limit of cells does not, so that the others
 // make theirs. The other ranks hear of it while their workers are still at work: StopControl::observe() calls
 // hear() a few times per second, on the thread that called the run. This is the only thread that may use
-// Communication. No worker waits for it.
+// Communication. No worker waits for it. A signal may also reach a rank that has ended its work and waits in
+// a collective; it announces the end from there.
 #pragma once
 
 #include <array>
@@ -25,7 +26,11 @@ class EndOnAllRanks {
     std::array<std::uint64_t, 1> before{ranks.announced()};
     ranks.maximum(before);
     before_ = before[0];
+    ranks.look_while_waiting([this] { over_.stop_requested() ? announce() : hear(); });
   }
+  ~EndOnAllRanks() { ranks_.look_while_waiting({}); }
+  EndOnAllRanks(const EndOnAllRanks&) = delete;
+  EndOnAllRanks& operator=(const EndOnAllRanks&) = delete;
 
   /// A stop is requested of this token when the run has to end on this rank.
   std::stop_token token() const { return over_.get_token(); }

@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 namespace podm {
 namespace {
@@ -30,8 +34,8 @@ double process_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Time spent in collectives: wall time, and processor time, because MPI keeps the processor busy while it
-// waits.
+// Time spent in collectives: wall time, and processor time, because a rank that waits keeps the processor
+// busy.
 struct InCollectives {
   double wall_s = 0, processor_s = 0;
 };
@@ -79,10 +83,13 @@ class MpiCommunication final : public Communication {
   }
   void barrier() override {
     const CollectiveClock clock(in_collectives_);
-    check(MPI_Barrier(all_), "MPI_Barrier");
+    MPI_Request all_have_come = MPI_REQUEST_NULL;
+    check(MPI_Ibarrier(all_, &all_have_come), "MPI_Ibarrier");
+    wait(all_have_come);
   }
   void announce(std::uint64_t value) override;
   std::uint64_t announced() override;
+  void look_while_waiting(std::function<void()> look) override { look_ = std::move(look); }
   double seconds() const override { return MPI_Wtime(); }
   RankReport report() const override {
     RankReport report = sent_;
@@ -96,6 +103,7 @@ class MpiCommunication final : public Communication {
   void start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests);
   void reduce(std::span<std::uint64_t> values, MPI_Datatype type, MPI_Op operation);
   void receive_announcement();
+  void wait(MPI_Request& collective) const;
   std::size_t num_ranks() const { return static_cast<std::size_t>(size_); }
   void note_sent(const Bytes& message) {
     sent_.messages_sent += !message.empty();
@@ -107,6 +115,7 @@ class MpiCommunication final : public Communication {
   InCollectives in_collectives_;
   RankReport sent_;
   std::size_t most_bytes_;
+  std::function<void()> look_;  // called while a collective waits; empty: nothing
   MPI_Comm all_ = MPI_COMM_NULL, announcements_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   std::deque<std::uint64_t> announced_;  // values that this rank sent, which must stay where they are
@@ -122,8 +131,11 @@ std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
   const CollectiveClock clock(in_collectives_);
   std::vector<std::uint64_t> to_send(num_ranks()), to_receive(num_ranks());
   for (std::size_t i = 0; i < num_ranks(); ++i) to_send[i] = messages[i].size();
-  check(MPI_Alltoall(to_send.data(), 1, MPI_UINT64_T, to_receive.data(), 1, MPI_UINT64_T, all_),
-        "MPI_Alltoall");
+  MPI_Request all_have_come = MPI_REQUEST_NULL;
+  check(MPI_Ialltoall(to_send.data(), 1, MPI_UINT64_T, to_receive.data(), 1, MPI_UINT64_T, all_,
+                      &all_have_come),
+        "MPI_Ialltoall");
+  wait(all_have_come);
 
   std::vector<Bytes> received(num_ranks());
   received[static_cast<std::size_t>(rank_)] = std::move(messages[static_cast<std::size_t>(rank_)]);
@@ -168,7 +180,10 @@ std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
   for (int other = 1; other < size_; ++other) note_sent(message);
   const std::uint64_t length = message.size();
   std::vector<std::uint64_t> lengths(num_ranks());
-  check(MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, all_), "MPI_Allgather");
+  MPI_Request all_have_come = MPI_REQUEST_NULL;
+  check(MPI_Iallgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, all_, &all_have_come),
+        "MPI_Iallgather");
+  wait(all_have_come);
 
   std::vector<Bytes> all(num_ranks());
   for (std::size_t i = 0; i < num_ranks(); ++i) all[i].resize(lengths[i]);
@@ -196,8 +211,27 @@ void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Datatype type
   const std::size_t most_values = most_bytes_ / sizeof(std::uint64_t);
   for (std::size_t begin = 0; begin < values.size(); begin += most_values) {
     const auto piece = values.subspan(begin, std::min(most_values, values.size() - begin));
-    check(MPI_Allreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), type, operation, all_),
-          "MPI_Allreduce");
+    MPI_Request all_have_come = MPI_REQUEST_NULL;
+    check(MPI_Iallreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), type, operation, all_,
+                         &all_have_come),
+          "MPI_Iallreduce");
+    wait(all_have_come);
+  }
+}
+
+// Each collective waits here until all ranks have called it. Short waits are busy, because a rank that sleeps
+// is late. Long ones leave the processor to others.
+void MpiCommunication::wait(MPI_Request& collective) const {
+  constexpr double kBusyS = 1e-3;
+  constexpr std::chrono::microseconds kSleep(100);
+  const double start_s = MPI_Wtime();
+  for (;;) {
+    int has_ended = 0;
+    check(MPI_Test(&collective, &has_ended, MPI_STATUS_IGNORE), "MPI_Test");
+    if (has_ended != 0) return;
+    if (MPI_Wtime() - start_s < kBusyS) continue;
+    if (look_) look_();
+    std::this_thread::sleep_for(kSleep);
   }
 }
 

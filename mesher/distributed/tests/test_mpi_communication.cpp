@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <functional>
+#include <stop_token>
 #include <string_view>
+#include <vector>
 
 #include "communication_cases.h"
+#include "distributed/end_on_all_ranks.h"
 #include "distributed/mpi_communication.h"
 #include "distributed/rank_failure.h"
 
@@ -29,6 +34,32 @@ TEST(MpiCommunication, NoRankLeavesABarrierBeforeAllHaveCome) { expect_barrier(*
 
 TEST(MpiCommunication, AllRanksHearTheLargestAnnouncement) {
   for (int i = 0; i < 3; ++i) expect_announcements(*mpi_communication(), false);
+}
+
+// The other ranks come to the collective after they have heard of the end.
+TEST(MpiCommunication, ARankThatWaitsAnnouncesTheEnd) {
+  const auto communication = mpi_communication();
+  const std::function<void()> collectives[] = {
+      [&] { communication->barrier(); },
+      [&] { communication->all_gather(Bytes(1)); },
+      [&] { communication->all_to_all(std::vector<Bytes>(static_cast<std::size_t>(communication->size()))); },
+      [&] {
+        std::array<std::uint64_t, 1> one{1};
+        communication->sum(one);
+      },
+  };
+  for (const auto& collective : collectives) {
+    std::stop_source stop;
+    EndOnAllRanks end(*communication, stop.get_token());
+    if (communication->rank() == communication->size() - 1) {
+      stop.request_stop();
+    } else {
+      const double start_s = communication->seconds();
+      while (!end.token().stop_requested() && communication->seconds() < start_s + 20) end.hear();
+      EXPECT_TRUE(end.token().stop_requested());
+    }
+    collective();
+  }
 }
 
 TEST(MpiCommunication, ItsClockGoesOn) {
