@@ -8,7 +8,8 @@
 //               mesh of the inside alone is not convex.
 //   Cost        About n log n. The global test asks a tree of all vertices for those in a ball slightly
 //               larger than the circumball. These are few, unless very many vertices lie near one sphere. On
-//               ranks, a cell is sent to each rank with a vertex box that its ball meets.
+//               ranks, a cell is sent to each rank with a vertex box that its ball meets; a rank has up to
+//               64 boxes. The ranks send cells in batches of bounded size.
 //   Not proved  That the mesh is the triangulation of all its vertices: it may lack cells (a part of the
 //               triangulation is Delaunay too).
 #include <fmt/format.h>
@@ -88,7 +89,6 @@ bool meets(const Ball& ball, const Bounds& box) {
 // The rank's own vertices that cells use.
 struct UsedVertices {
   std::vector<VertexId> ids;
-  Bounds bounds = kEmptyBounds;
   BoxTree tree;  // of positions in `ids`
 
   explicit UsedVertices(const Mesh& mesh) : ids(own_used_vertices(mesh)), tree(boxes(mesh)) {}
@@ -101,13 +101,10 @@ struct UsedVertices {
       if (is_used[v] && owns_vertex(mesh, v)) found.push_back(v);
     return found;
   }
-  std::vector<Bounds> boxes(const Mesh& mesh) {
+  std::vector<Bounds> boxes(const Mesh& mesh) const {
     std::vector<Bounds> all;
     all.reserve(ids.size());
-    for (const VertexId v : ids) {
-      all.push_back({mesh.vertices[v], mesh.vertices[v]});
-      bounds = joined(bounds, all.back());
-    }
+    for (const VertexId v : ids) all.push_back({mesh.vertices[v], mesh.vertices[v]});
     return all;
   }
 };
@@ -194,7 +191,7 @@ class Spheres {
 // Holds what the global test finds on a rank, and the cells that other ranks have to test, by rank.
 struct GlobalPart {
   Tally tally;
-  std::vector<std::vector<SphereCell>> cells_for;
+  std::vector<std::vector<CellId>> cells_for;
 
   void add(const GlobalPart& other) {
     tally.add(other.tally);
@@ -203,11 +200,31 @@ struct GlobalPart {
   }
 };
 
+// Collective. Calls visit(cells) with the cells that other ranks have this rank test. No rank sends or
+// receives more than kCellsAtOnce at once, 150 MB.
+constexpr std::size_t kCellsAtOnce = std::size_t{1} << 20;
+template <class Visit>
+void for_each_batch_of_guests(const Mesh& mesh, const std::vector<std::vector<CellId>>& cells_for,
+                              const Visit& visit) {
+  Communication& ranks = ranks_of(mesh);
+  const std::size_t most = std::max(kCellsAtOnce / cells_for.size(), std::size_t{1});  // to a rank
+  std::size_t num_batches = 0;
+  for (const auto& cells : cells_for) num_batches = std::max(num_batches, (cells.size() + most - 1) / most);
+  for (const std::size_t of_rank : gather(ranks, num_batches)) num_batches = std::max(num_batches, of_rank);
+  for (std::size_t batch = 0; batch < num_batches; ++batch) {
+    auto lists = lists_for<SphereCell>(ranks);
+    for (std::size_t r = 0; r < lists.size(); ++r)
+      for (std::size_t i = batch * most; i < std::min((batch + 1) * most, cells_for[r].size()); ++i)
+        lists[r].push_back(sphere_cell(mesh, cells_for[r][i]));
+    visit(exchange_joined(ranks, std::move(lists)));
+  }
+}
+
 Tally check_all_vertices(const Mesh& mesh, const Spheres& spheres, int threads) {
   const UsedVertices vertices(mesh);
-  const RankBoxes boxes(mesh, vertices.bounds);
+  const RankBoxes boxes(ranks_of(mesh), vertices.tree.boxes_at(kLevelsOfRankBoxes));
   GlobalPart own =
-      tally_over(own_cells(mesh), threads, GlobalPart{{}, lists_for<SphereCell>(ranks_of(mesh))},
+      tally_over(own_cells(mesh), threads, GlobalPart{{}, lists_for<CellId>(ranks_of(mesh))},
                  [&](std::size_t i, GlobalPart& part) {
                    const auto c = static_cast<CellId>(i);
                    if (spheres.is_flat(c, part.tally)) return;
@@ -215,12 +232,13 @@ Tally check_all_vertices(const Mesh& mesh, const Spheres& spheres, int threads) 
                    const Ball ball = ball_around(cell.points);
                    spheres.check_ball(cell, ball, vertices, part.tally);
                    boxes.for_each_other([&](const Bounds& box) { return meets(ball, box); },
-                                        [&](std::size_t rank) { part.cells_for[rank].push_back(cell); });
+                                        [&](std::size_t rank) { part.cells_for[rank].push_back(c); });
                  });
-  const std::vector<SphereCell> guests = exchange_joined(ranks_of(mesh), std::move(own.cells_for));
-  own.tally.add(tally_over({0, guests.size()}, threads, {}, [&](std::size_t i, Tally& t) {
-    spheres.check_ball(guests[i], ball_around(guests[i].points), vertices, t);
-  }));
+  for_each_batch_of_guests(mesh, own.cells_for, [&](const std::vector<SphereCell>& guests) {
+    own.tally.add(tally_over({0, guests.size()}, threads, {}, [&](std::size_t i, Tally& t) {
+      spheres.check_ball(guests[i], ball_around(guests[i].points), vertices, t);
+    }));
+  });
   return over_ranks(mesh, std::move(own.tally));
 }
 

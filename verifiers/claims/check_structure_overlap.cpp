@@ -47,16 +47,22 @@ class BoundaryFacets {
     }
     return facets;
   }
-  // Collective. Returns the facets of all ranks whose boxes meet that of the rank's own cells and vertices. A
-  // vertex of its own may be on cells of other ranks only.
-  static std::vector<BoundaryFacet> near_rank(const Mesh& mesh, std::vector<BoundaryFacet> own) {
-    Bounds of_rank = kEmptyBounds;
+  // Returns boxes of the rank's own cells and vertices. A vertex of its own may be on cells of other ranks
+  // only.
+  static std::vector<Bounds> boxes_of_rank(const Mesh& mesh) {
     const IdRange cells = own_cells(mesh);
-    for (auto c = static_cast<CellId>(cells.begin); c < cells.end; ++c)
-      of_rank = joined(of_rank, bounds_of(points_of(mesh, c)));
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-      if (owns_vertex(mesh, v)) of_rank = joined(of_rank, {mesh.vertices[v], mesh.vertices[v]});
-    const RankBoxes boxes(mesh, of_rank);
+    std::vector<Bounds> boxes = boxes_of_ranges(cells.size(), [&](std::size_t i) {
+      return bounds_of(points_of(mesh, static_cast<CellId>(cells.begin + i)));
+    });
+    const std::vector<Bounds> of_vertices = boxes_of_ranges(mesh.vertices.size(), [&](std::size_t v) {
+      return owns_vertex(mesh, v) ? Bounds{mesh.vertices[v], mesh.vertices[v]} : kEmptyBounds;
+    });
+    boxes.insert(boxes.end(), of_vertices.begin(), of_vertices.end());
+    return boxes;
+  }
+  // Collective. Returns the facets of all ranks whose boxes meet one of this rank's.
+  static std::vector<BoundaryFacet> near_rank(const Mesh& mesh, std::vector<BoundaryFacet> own) {
+    const RankBoxes boxes(ranks_of(mesh), boxes_of_rank(mesh));
     auto lists = lists_for<BoundaryFacet>(ranks_of(mesh));
     for (const BoundaryFacet& facet : own) {
       const Bounds near = bounds_of(facet.points);

@@ -12,6 +12,7 @@
 #include "claims/worst_witnesses.h"
 #include "parallel.h"
 #include "ranks/part.h"
+#include "ranks/tree_sum.h"
 
 namespace podm::verify {
 
@@ -97,12 +98,7 @@ template <class Sum>
 Sum over_ranks(const Mesh& mesh, Sum own) {
   std::vector<GlobalId> bad_cells = std::move(own.bad_cells);
   own.bad_cells.clear();
-  Communication& ranks = ranks_of(mesh);
-  if (ranks.size() > 1) {
-    std::vector<Sum> parts = gather(ranks, own);
-    for (std::size_t r = 1; r < parts.size(); ++r) parts[0].add(parts[r]);
-    own = std::move(parts[0]);
-  }
+  own = tree_sum(ranks_of(mesh), std::move(own));
   own.bad_cells = own_of(mesh, std::move(bad_cells));
   return own;
 }

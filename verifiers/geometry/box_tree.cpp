@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace podm::verify {
 
@@ -36,6 +37,24 @@ std::uint32_t BoxTree::build(const std::vector<Bounds>& boxes, std::uint32_t beg
   const std::uint32_t right = build(boxes, middle, end);
   nodes_[index].right = right;
   return index;
+}
+
+std::vector<Bounds> BoxTree::boxes_at(std::size_t levels) const {
+  std::vector<Bounds> boxes;
+  std::vector<std::pair<std::uint32_t, std::size_t>> stack;  // nodes, and the levels below them
+  if (!nodes_.empty()) stack.emplace_back(0, levels);
+  while (!stack.empty()) {
+    const auto [index, below] = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[index];
+    if (below == 0 || node.right == 0) {
+      boxes.push_back(node.box);
+    } else {
+      stack.emplace_back(node.right, below - 1);
+      stack.emplace_back(index + 1, below - 1);
+    }
+  }
+  return boxes;
 }
 
 }  // namespace podm::verify

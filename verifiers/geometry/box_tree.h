@@ -49,6 +49,10 @@ class BoxTree {
  public:
   explicit BoxTree(const std::vector<Bounds>& boxes);
 
+  /// Returns at most 2^levels boxes that hold all: the boxes of the nodes at depth `levels`, and of the
+  /// leaves at lesser depth.
+  std::vector<Bounds> boxes_at(std::size_t levels) const;
+
   /// Calls visit(i) once for every box i of the leaves whose box `meets`. The function `meets` must be true
   /// for every box that contains a box for which it is true.
   template <class Meets, class Visit>

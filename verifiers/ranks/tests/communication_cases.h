@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ranks/communication.h"
+#include "ranks/tree_sum.h"
 
 namespace podm::verify {
 
@@ -59,9 +60,24 @@ inline void expect_refusal_of_other_facts(Communication& ranks) {
   }
 }
 
+struct Joined {
+  std::string text;
+  void add(const Joined& other) { text += other.text; }
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(text);
+  }
+};
+inline void expect_sum_in_the_order_of_ranks(Communication& ranks) {
+  std::string expected;
+  for (int r = 0; r < ranks.size(); ++r) expected += std::to_string(r) + ' ';
+  EXPECT_EQ(tree_sum(ranks, Joined{std::to_string(ranks.rank()) + ' '}).text, expected);
+}
+
 inline void expect_all_of_communication(Communication& ranks) {
   expect_lists_to_arrive(ranks);
   expect_values_of_all(ranks);
+  expect_sum_in_the_order_of_ranks(ranks);
   expect_fault_of_all(ranks);
   expect_refusal_of_other_facts(ranks);
 }

@@ -6,7 +6,7 @@ namespace podm::verify {
 namespace {
 
 TEST(RanksInProcess, CommunicateLikeRanks) {
-  for (const int num_ranks : {1, 2, 3, 8})
+  for (const int num_ranks : {1, 2, 3, 5, 8})
     run_ranks(num_ranks, [&](Communication& ranks) {
       EXPECT_EQ(ranks.size(), num_ranks);
       for (int i = 0; i < 20; ++i) expect_all_of_communication(ranks);
