@@ -4,38 +4,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <csignal>
 #include <cstdio>
 #include <exception>
-#include <new>
 
 #include "parallel.h"
 #include "ranks/ranks_in_process.h"
 #include "ranks/ranks_over_mpi.h"
 #include "readers/read_pvtu_part.h"
+#include "report_fault.h"
 #include "verify.h"
 
 namespace podm::verify {
 namespace {
 
-int complain(const std::string& fault, int exit_code) {
-  fmt::print(stderr, "podm-verify-mpi: {}\n", fault);
-  return exit_code;
-}
-
-// Reports a fault that only some ranks know.
-int complain_of_one(const Communication& ranks) {
-  const std::string who =
-      ranks.size() > 1 ? fmt::format("rank {} of {}: ", ranks.rank(), ranks.size()) : std::string();
-  try {
-    throw;
-  } catch (const InputError& error) {
-    return complain(who + error.what(), kBadInput);
-  } catch (const std::bad_alloc&) {
-    return complain(who + "out of memory", kInternal);
-  } catch (const std::exception& error) {
-    return complain(who + "internal error: " + error.what(), kInternal);
-  }
+// Reports a fault that only some ranks know. Returns the exit code.
+int report_fault_of_one(const Communication& ranks) {
+  return report_fault(ranks.size() > 1
+                          ? fmt::format("podm-verify-mpi: rank {} of {}: ", ranks.rank(), ranks.size())
+                          : "podm-verify-mpi: ");
 }
 
 int verify_part(Command command, Communication& ranks, int ranks_on_machine) {
@@ -81,22 +67,21 @@ int run(int argc, char** argv, Communication& ranks) {
 
 int main(int argc, char** argv) {
   using namespace podm::verify;
-  // A file-size limit or a closed pipe then fails the write, which is reported and cleaned up.
-  std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
+  let_writes_fail();
   try {
     const MpiSession session(argc, argv);
     const auto ranks = ranks_over_mpi();
     try {
       return run(argc, argv, *ranks);
-    } catch (const RefusedByAll& error) {
-      return ranks->rank() == 0 ? complain(error.what(), kBadInput) : kBadInput;
+    } catch (const RefusedByAll&) {
+      return ranks->rank() == 0 ? report_fault("podm-verify-mpi: ") : kBadInput;
     } catch (...) {
-      const int exit_code = complain_of_one(*ranks);
+      const int exit_code = report_fault_of_one(*ranks);
       if (ranks->size() == 1) return exit_code;
       abort_all_ranks(exit_code);
     }
   } catch (const std::exception& error) {
-    return complain(error.what(), kInternal);
+    fmt::print(stderr, "podm-verify-mpi: {}\n", error.what());
+    return kInternal;
   }
 }
