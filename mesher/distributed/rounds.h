@@ -8,7 +8,7 @@
 //   3  In round 0 a rank's zone is its block. The rank refines the cells whose least vertices are in the
 //      block, by PODM alone or leaf by leaf first (leaves_of_zone.h). A cell that needs vertices outside is
 //      deferred.
-//   4  In rounds 1 to 3 the zones are shifted blocks. In later rounds zones surround the deferred cells that
+//   4  In rounds 1 to 4 the zones are shifted blocks. In later rounds zones surround the deferred cells that
 //      are left (zones_of_round.h). They become wider from round to round. When one zone fills space its rank
 //      knows all vertices and defers nothing; therefore the rounds end.
 //   5  R7 moves vertices in rounds with the same zones, if it is requested (refine/perturbation.h).

@@ -189,7 +189,7 @@ Zones::Zones(int round, CubeSet waiting, const Blocks& blocks, const Writers& wr
   const double length = std::cbrt(grid_->num_cubes() / static_cast<double>(blocks.number()));
   if (length < kLeastStripe) return;
   stripe_ = 1 + static_cast<int>(length);
-  const std::array<int, kShiftedRounds> begins{stripe_ / 2, 2 * stripe_ / 3, stripe_ / 3};
+  const std::array<int, kShiftedRounds> begins{stripe_ / 2, 2 * stripe_ / 3, stripe_ / 3, stripe_ / 6};
   first_stripe_ = begins.at(static_cast<std::size_t>(round - 1));
 }
 

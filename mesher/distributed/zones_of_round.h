@@ -5,8 +5,8 @@
 // blocks are long, by stripes in one direction and in the other: the two blocks share the cells of the face.
 // The shifted faces lie inside blocks. The deferred cells of a face wait again only where the face meets
 // another shifted face, or where the direction changes: along lines after round 1, at points after round 2,
-// and hardly anywhere after round 3. All ranks are busy in these rounds. A zone does not include cubes where
-// no cell waits and which another rank wrote last, so that they need not be sent.
+// and hardly anywhere after rounds 3 and 4. All ranks are busy in these rounds. A zone does not include cubes
+// where no cell waits and which another rank wrote last, so that they need not be sent.
 //
 // In later rounds zones are the connected parts of the cubes around the deferred cells. Up to round
 // kLastRoundWithCuts parts with many deferred cells are cut anew, into boxes, at places where few of these
@@ -24,7 +24,7 @@ namespace podm {
 
 inline constexpr int kNoRank = -1;
 
-inline constexpr int kShiftedRounds = 3;
+inline constexpr int kShiftedRounds = 4;
 inline constexpr int kLastRoundWithCuts = 8;
 
 struct CubeCount {
