@@ -41,12 +41,13 @@ pid_t process_of(std::string_view name) {
   return last.ec == std::errc() && last.ptr == end ? process : 0;
 }
 
-// Takes the old temporaries of `target` from those found. A folder is searched once per process, because it
-// may contain one file per label and many other files.
-std::vector<OldTemporary> take_old_temporaries(const std::string& target, const HeldLeftovers&) {
+using OldByTarget = std::map<std::string, std::vector<OldTemporary>>;
+
+// Returns the old temporaries of the folders searched so far, this one included. A folder is searched once
+// per process, because it may contain one file per label and many other files.
+OldByTarget& old_temporaries(const std::string& folder, const HeldLeftovers&) {
   static auto& folders = *new std::set<std::string>;
-  static auto& found = *new std::map<std::string, std::vector<OldTemporary>>;
-  const std::string folder = folder_of(target);
+  static auto& found = *new OldByTarget;
   std::error_code error;
   if (folders.insert(folder).second) {
     const std::string listed = folder.empty() ? "." : folder;
@@ -57,7 +58,12 @@ std::vector<OldTemporary> take_old_temporaries(const std::string& target, const 
         found[folder + name.substr(0, name.rfind(kMark))].push_back({folder + name, process});
     }
   }
-  const auto node = found.extract(target);
+  return found;
+}
+
+// Takes the old temporaries of `target` from those found.
+std::vector<OldTemporary> take_old_temporaries(const std::string& target, const HeldLeftovers& leftovers) {
+  const auto node = old_temporaries(folder_of(target), leftovers).extract(target);
   return node ? std::move(node.mapped()) : std::vector<OldTemporary>{};
 }
 
@@ -124,6 +130,14 @@ Temporary make_temporary(const std::string& target, int (*make)(const char* path
     if (made.descriptor >= 0) ::close(made.descriptor);
     if (made.error_number != 0 && made.error_number != EEXIST) return {{}, -1, made.error_number};
   }
+}
+
+void remove_old_temporaries(const std::string& folder,
+                            const std::function<bool(const std::string& target)>& is_target) {
+  const HeldLeftovers leftovers;
+  for (const auto& [target, all] : old_temporaries(folder, leftovers))
+    if (folder_of(target) == folder && is_target(target))
+      for (const OldTemporary& old : all) remove_if_abandoned(old, leftovers);
 }
 
 std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }

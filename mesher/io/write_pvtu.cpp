@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "files/temporary_name.h"
 #include "io/write_vtu.h"
 #include "io/xml_text.h"
 
@@ -52,6 +53,17 @@ std::string index_of_facets(const std::string& path, int num_pieces) {
   return index_text(array("UInt32", "label_a", 1) + array("UInt32", "label_b", 1), pieces);
 }
 
+// True for x_7.vtu and x_7_facets.vtu, if the index is x.pvtu.
+bool is_piece(const std::string& path, const std::string& index_path) {
+  const std::string name = fs::path(path).filename().string(),
+                    prefix = fs::path(index_path).stem().string() + "_";
+  if (!name.starts_with(prefix)) return false;
+  const std::size_t end = name.find_first_not_of("0123456789", prefix.size());
+  if (end == prefix.size() || end == std::string::npos) return false;
+  const std::string rest = name.substr(end);
+  return rest == ".vtu" || rest == "_facets.vtu";
+}
+
 void remove_old(const std::string& path) {
   std::error_code error;
   fs::remove(path, error);
@@ -86,6 +98,7 @@ void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_p
     remove_old(piece_path(path, rank));
     remove_old(facets_path_of(piece_path(path, rank)));
   }
+  remove_old_temporaries(folder_of(path), [&](const std::string& target) { return is_piece(target, path); });
 }
 
 }  // namespace podm

@@ -21,7 +21,8 @@ std::deque<AtomicFile> write_pvtu_piece(const MeshPiece& piece, const std::strin
 int withdraw_pvtu_index(const std::string& path);
 
 /// Writes the index of the cells and that of the facets. All pieces must have been published. Then removes
-/// the remaining pieces of an earlier mesh that had more pieces.
+/// the remaining pieces of an earlier mesh that had more pieces, and what a killed run of more ranks has left
+/// of its pieces.
 void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_pieces);
 
 }  // namespace podm

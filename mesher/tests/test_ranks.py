@@ -233,6 +233,14 @@ class Meshes(OnRanks):
 
 
 class InProcess(OnRanks):
+    def test_what_a_killed_run_of_more_ranks_has_left_goes(self):
+        left = {"out_7.vtu.tmp1-0", "out_7_facets.vtu.tmp1-1", "run.log.9.tmp1-2"}
+        others = {"out_x.vtu.tmp1-0", "out_7.vtu.tmp", "out_7.vtk.tmp1-0", "else_7.vtu.tmp1-0", "run.log.x.tmp1-2"}
+        for name in left | others:
+            (self.folder / name).touch()
+        self.assert_exit(self.mesh_in_process(2, "--radius", 9, "--log", self.folder / "run.log"), 0)
+        self.assertEqual(self.names() & (left | others), others)
+
     def contents(self, number, out=None):
         path = out or self.out
         return [path.with_name(f"{path.stem}_{i}.vtu").read_bytes() for i in range(number)]

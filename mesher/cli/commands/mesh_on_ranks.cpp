@@ -21,6 +21,7 @@
 #include "distributed/in_process_ranks.h"
 #include "distributed/read_by_bricks.h"
 #include "distributed/write_pieces.h"
+#include "files/temporary_name.h"
 #include "podm/mesh_io.h"
 #include "podm/operation_log.h"
 
@@ -172,8 +173,14 @@ class Run {
     if (ranks_.rank() == 0) remove_logs_of_more_ranks();
   }
 
-  // Removes the logs of an earlier run on more ranks, which would look like logs of this run.
+  // Removes the logs of an earlier run on more ranks, which would look like logs of this run, and what a
+  // killed one has left of its logs.
   void remove_logs_of_more_ranks() const {
+    remove_old_temporaries(folder_of(command_.log_path), [&](const std::string& target) {
+      const std::string prefix = command_.log_path + ".";
+      return target.starts_with(prefix) && target.size() > prefix.size() &&
+             target.find_first_not_of("0123456789", prefix.size()) == std::string::npos;
+    });
     std::error_code error;
     for (int rank = ranks_.size() == 1 ? 0 : ranks_.size();; ++rank)
       if (!std::filesystem::remove(fmt::format("{}.{}", command_.log_path, rank), error)) return;
