@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 # Prints the rooms (folders) that a file of room $1 may include besides its own. include/ holds podm/*.h. Its headers
 # about a whole run form the room podm, because the rooms below the algorithms need only the small public headers.
 ground="mesher/geometry mesher/runtime mesher/include"
-label_function="mesher/smoothing mesher/isosurface mesher/image $ground"
+label_function="mesher/lines mesher/smoothing mesher/isosurface mesher/image $ground"
 store="mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/sizing $label_function podm"
 may_include() {
   case $1 in
@@ -17,8 +17,9 @@ may_include() {
     mesher/image) echo mesher/files "$ground" ;;
     mesher/isosurface) echo mesher/image "$ground" ;;
     mesher/smoothing) echo mesher/isosurface mesher/image "$ground" ;;
+    mesher/lines) echo mesher/isosurface mesher/image "$ground" ;;
     mesher/sizing) echo mesher/isosurface mesher/image "$ground" podm ;;
-    mesher/refine) echo mesher/delaunay mesher/sizing mesher/isosurface mesher/image "$ground" ;;
+    mesher/refine) echo mesher/delaunay mesher/sizing mesher/lines mesher/isosurface mesher/image "$ground" ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo "$store" ;;
