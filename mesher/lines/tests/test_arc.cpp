@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
+#include "isosurface/tests/isosurface_reference.h"
 #include "lines/arc.h"
 
 namespace podm::test {
 namespace {
-
-using Random = std::mt19937_64;
-
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
 
 LineArc random_arc(Random& random, bool is_closed) {
   LineArc arc;
