@@ -26,7 +26,7 @@ constexpr int kRowsOfTask = 8;
 // Estimated bytes by the number of labels in a block, and per square on a side: pieces, their points and
 // joints, twice while they are joined. Measured on noise, where blocks have most pieces.
 constexpr std::array<std::uint64_t, 9> kBytesOfBlock{0, 0, 0, 700, 2000, 4000, 6500, 10000, 14000};
-constexpr std::uint64_t kBytesOfSquare = 700;
+constexpr std::uint64_t kBytesOfSquare = 1500;
 constexpr std::uint64_t kBytesOfThread = 1 << 20;
 
 class LineTracer {
