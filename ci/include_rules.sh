@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 # about a whole run form the room podm, because the rooms below the algorithms need only the small public headers.
 ground="mesher/geometry mesher/runtime mesher/include"
 label_function="mesher/lines mesher/smoothing mesher/isosurface mesher/image $ground"
-store="mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/sizing $label_function podm"
+store="mesher/workers mesher/refine mesher/topology mesher/delaunay mesher/octree mesher/sizing $label_function podm"
 may_include() {
   case $1 in
     mesher/geometry | mesher/runtime | mesher/include) ;;
@@ -20,6 +20,7 @@ may_include() {
     mesher/lines) echo mesher/isosurface mesher/image "$ground" ;;
     mesher/sizing) echo mesher/isosurface mesher/image "$ground" podm ;;
     mesher/refine) echo mesher/delaunay mesher/sizing mesher/lines mesher/isosurface mesher/image "$ground" ;;
+    mesher/topology) echo mesher/delaunay mesher/image "$ground" ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo "$store" ;;

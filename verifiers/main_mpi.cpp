@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -28,6 +29,9 @@ int verify_part(Command command, Communication& ranks, int ranks_on_machine) {
   command.options.threads = num_threads(command.options.threads, ranks_on_machine);
   const std::string& path = command.options.mesh_path;
   do_on_all(ranks, [&] {
+    const auto& claims = command.options.claims;
+    if (std::find(claims.begin(), claims.end(), "topology") != claims.end())
+      throw InputError("--claims topology: not on ranks, as it needs the whole mesh; podm-verify checks it");
     if (!path.ends_with(".pvtu") && !path.ends_with(".pvtu.gz"))
       throw InputError(path + ": not a mesh in pieces (.pvtu); podm-verify reads the other formats");
   });

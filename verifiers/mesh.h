@@ -27,6 +27,13 @@ enum class Space { kUnstated, kRas, kLps, kVoxel };
 
 struct Part;
 
+/// A difference of topology from the image that the file lists.
+struct ListedDifference {
+  std::string kind;
+  LabelValue label = 0;
+  std::array<std::int64_t, 3> voxel{};
+};
+
 /// A tetrahedral mesh file. Readers guarantee that every vertex id of `cells` and `facets` is the id in the
 /// file, made 0-based. An id that names no vertex is kept if it fits, and becomes kNone otherwise. The
 /// *structure* claim, not the reader, judges that ids are in range and coordinates are finite.
@@ -45,7 +52,11 @@ struct Mesh {
   Space space = Space::kUnstated;
   std::set<std::string> unclaimed;  ///< claims that the file states not to make
   std::optional<std::array<double, 2>>
-      promised_dihedral_deg;           ///< least and largest dihedral angle that the file promises
+      promised_dihedral_deg;  ///< least and largest dihedral angle that the file promises
+  /// The number of differences from the topology of the image's labels that the file states to list; none: it
+  /// promises nothing about the topology.
+  std::optional<std::uint64_t> promised_topology;
+  std::vector<ListedDifference> listed_differences;
   std::optional<double> smoothing_mm;  ///< width by which the image was smoothed before meshing
   /// The part of the mesh that this rank holds (ranks/part.h); null: the whole mesh.
   std::shared_ptr<const Part> part;

@@ -28,6 +28,8 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
              !options.interface_sizes.empty();
     case Needs::kDihedralBound:
       return options.min_dihedral_deg || options.max_dihedral_deg || mesh.promised_dihedral_deg;
+    case Needs::kPromisedImage:
+      return !options.image_path.empty() && mesh.promised_topology && mesh.part == nullptr;
   }
   return false;
 }
@@ -102,7 +104,8 @@ const std::vector<Claim>& all_claims() {
       {"labels", Needs::kImage, [](I i, A, O o) { return check_labels(i.mesh, *i.image, o); }},
       {"surface_vertices", Needs::kImage,
        [](I i, A a, O o) { return check_surface_vertices(i.mesh, a, *i.image, o); }},
-      {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }}};
+      {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }},
+      {"topology", Needs::kPromisedImage, [](I i, A a, O) { return check_topology(i.mesh, a, *i.image); }}};
   return kAll;
 }
 
@@ -155,7 +158,7 @@ std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options
                                     [&](const Claim& known) { return known.name == name; });
     if (!is_sound && name != "structure") {
       results.push_back(not_run(name, "the mesh is empty or has invalid vertex ids or coordinates"));
-    } else if (claim->needs == Needs::kImage && !inputs.image) {
+    } else if ((claim->needs == Needs::kImage || claim->needs == Needs::kPromisedImage) && !inputs.image) {
       results.push_back(not_run(name, "no image given (--image)"));
     } else {
       results.push_back(claim->check(inputs, adjacency, options));

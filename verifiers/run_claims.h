@@ -16,7 +16,13 @@
 namespace podm::verify {
 
 /// The input that a claim needs in addition to the mesh.
-enum class Needs { kNothing, kImage, kBound, kDihedralBound };
+enum class Needs {
+  kNothing,
+  kImage,
+  kBound,
+  kDihedralBound,
+  kPromisedImage,  ///< an image, and a file that promises the claim, or a request by name
+};
 
 /// Throws InputError if an unknown claim is asked for.
 void check_claims(const Options& options);

@@ -48,6 +48,14 @@ void check_size_image(const SizeImage& image) {
       throw InputError(image.path + ": radii must be finite and not negative");
 }
 
+void check_thin(const SizeOptions& sizes) {
+  if (sizes.thin == Thin::kLose && sizes.delta_least_mm > 0)
+    throw InputError(fmt::format("{} needs {} keep", spelled("delta-least"), spelled("thin")));
+  if (sizes.thin == Thin::kKeep && sizes.target_elements > 0)
+    throw InputError(fmt::format("{} keep excludes {}: how many cells mend the layers is known afterwards",
+                                 spelled("thin"), spelled("target-elements")));
+}
+
 void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   for (const auto& [value, radius] : sizes.radius_of_mm) {
     if (!has_value(image.labels.begin() + 1, image.labels.end(), value))
@@ -61,6 +69,7 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
     throw InputError("the factor of a size image must be a positive number");
   if (sizes.target_elements > 0 && sizes.radius_mm > 0)
     throw InputError("a target number of elements excludes a radius");
+  check_thin(sizes);
 }
 
 void check_crossover(const MeshingOptions& options) {

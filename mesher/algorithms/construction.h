@@ -18,9 +18,11 @@
 #include "geometry/dihedral.h"
 #include "podm/limits.h"
 #include "podm/meshing_report.h"
+#include "podm/topology_report.h"
 #include "refine/rules.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
+#include "sizing/thin_layers.h"
 #include "workers/accounting.h"
 #include "workers/coordination.h"
 #include "workers/real_time.h"
@@ -40,6 +42,8 @@ struct Problem {
   // A full store of this capacity has run out of cell numbers, not of memory. Tests set a lower value.
   std::size_t most_numbered_cells = kMostStoredCells;
   std::optional<DihedralBounds> dihedral_bounds = {};  // for R7; none: R7 is not requested
+  std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta_mm everywhere
+  const ThinLayers* thin = nullptr;                    // that these deltas keep; null: none is kept
   /// Receives R7's progress, from 0 to 1, and the number of cells in the store.
   std::function<void(double fraction, std::uint64_t cells)> observe_perturbation = {};
 };
@@ -83,6 +87,7 @@ struct Refinement {
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
   std::optional<PerturbationReport> perturbation;
+  std::optional<TopologyReport> topology;  // set if thin layers are kept
 };
 
 /// The phase that prepares store, pools, workers and threads.
@@ -196,6 +201,7 @@ class Construction {
     result_.schedule = std::move(schedule);
   }
   void report(const PerturbationReport& perturbation) { result_.perturbation = perturbation; }
+  void report(const TopologyReport& topology) { result_.topology = topology; }
   Refinement finish();
 
  private:

@@ -3,6 +3,7 @@
 #include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
+#include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
 
@@ -34,7 +35,7 @@ template <class Locks>
 Refinement refine_by_leaves(const Problem& problem, const Team& team, const LeafOptions& options,
                             StopControl& stop) {
   const Radii radii = radii_of(problem);
-  const TwoLevels levels = two_levels(problem, options.initial_ratio);
+  TwoLevels levels = two_levels(problem, options.initial_ratio);
   const std::uint64_t bytes_of_leaves = checked_bytes_of_leaves(problem, options, levels.clamp);
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
@@ -51,6 +52,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   construction.reduce_capacity(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());
+  mend_topology(construction, levels.final);
   perturb_mesh(construction, levels.final);
   return construction.finish();  // 30
 }

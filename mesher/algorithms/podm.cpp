@@ -6,6 +6,7 @@
 
 #include "algorithms/leaf_locks.h"
 #include "algorithms/leaf_size.h"
+#include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm_loop.h"
 #include "refine/virtual_box.h"
@@ -56,8 +57,11 @@ Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp
   const double k = std::sqrt(2 + std::sqrt(3.0));
   const SizeField sizes = problem.sizes.scaled(ratio);
   const double delta_mm = ratio * problem.delta_mm;
-  const double spacing_mm = std::min(delta_mm, std::sqrt(sizes.smallest_squared_radius()) / k);
-  return {.delta_mm = delta_mm, .sizes = sizes, .clamp_box = clamp, .spacing_mm = spacing_mm};
+  const auto deltas = ratio == 1 ? problem.deltas : nullptr;  // a coarse mesh keeps no thin layers
+  const double least_mm = deltas != nullptr ? deltas->least_mm() : delta_mm;
+  const double spacing_mm = std::min(least_mm, std::sqrt(sizes.smallest_squared_radius()) / k);
+  return {
+      .delta_mm = delta_mm, .sizes = sizes, .clamp_box = clamp, .spacing_mm = spacing_mm, .deltas = deltas};
 }
 
 TwoLevels two_levels(const Problem& problem, double initial_ratio) {
@@ -74,8 +78,9 @@ TwoLevels two_levels(const Problem& problem, double initial_ratio) {
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
-  const Parameters parameters = parameters_for(problem, 1, clamp);
+  Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers());
+  mend_topology(construction, parameters);
   perturb_mesh(construction, parameters);
   return construction.finish();
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "algorithms/leaf_size.h"
+#include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
 #include "geometry/spread_point.h"
@@ -51,9 +52,10 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
     homes.emplace(expected_work(problem, num_samples), num_homes);
     return looking_up_places(num_samples);
   });
-  const Parameters parameters = parameters_for(problem, 1, clamp);
+  Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);
+  mend_topology(construction, parameters);
   perturb_mesh(construction, parameters);
   return construction.finish();
 }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "image/components.h"
-#include "runtime/parallel_for.h"
+#include "image/label_depths.h"
 
 namespace podm {
 
@@ -20,90 +20,6 @@ float squared(float x) { return x * x; }
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// A number for each voxel. It is updated line by line, along one axis after another.
-class VoxelField {
- public:
-  VoxelField(const LabelImage& image, float value, int threads)
-      : image_(image), threads_(num_threads(threads)), values_(image.voxels.size(), value) {}
-
-  float& operator[](std::size_t voxel) { return values_[voxel]; }
-
-  /// Sets each foreground voxel i of each line, along x, then y, then z, to change(labels, before, i, spacing
-  /// in mm).
-  template <class Change>
-  void sweep(const Change& change) {
-    for (std::size_t axis = 0; axis < 3; ++axis) sweep(axis, change);
-  }
-
- private:
-  template <class Change>
-  void sweep(std::size_t axis, const Change& change) {
-    const auto length = static_cast<std::size_t>(image_.size[axis]);
-    const std::size_t across = axis == 0 ? 1 : 0, along = axis == 2 ? 1 : 2;
-    const std::array<std::size_t, 3> stride{1, image_.index(0, 1, 0), image_.index(0, 0, 1)};
-    const auto sheets = static_cast<std::size_t>(image_.size[along]);
-    parallel_for(sheets, threads_, [&](std::size_t sheet, std::size_t) {
-      std::vector<LabelIndex> labels(length);
-      std::vector<float> before(length);
-      for (std::size_t line = 0; line < static_cast<std::size_t>(image_.size[across]); ++line) {
-        const std::size_t begin = sheet * stride[along] + line * stride[across];
-        bool is_empty = true;
-        for (std::size_t i = 0; i < length; ++i) {
-          labels[i] = image_.voxels[begin + i * stride[axis]];
-          before[i] = values_[begin + i * stride[axis]];
-          is_empty = is_empty && labels[i] == kBackground;
-        }
-        if (is_empty) continue;
-        for (std::size_t i = 0; i < length; ++i)
-          if (labels[i] != kBackground)
-            values_[begin + i * stride[axis]] = change(labels, before, i, image_.spacing[axis]);
-      }
-    });
-  }
-
-  const LabelImage& image_;
-  std::size_t threads_;
-  std::vector<float> values_;
-};
-
-// Finds squared depths, mm^2, up to that of `most_mm`.
-void find_depths(VoxelField& depths, double most_mm) {
-  depths.sweep([&](const std::vector<LabelIndex>& labels, const std::vector<float>& before, std::size_t i,
-                   double spacing_mm) {
-    float least = before[i];
-    const auto look = [&](std::size_t at, float cost) {
-      const bool is_own =
-          at < labels.size() && labels[at] == labels[i];  // an index before the first wraps around
-      least = std::min(least, (is_own ? before[at] : 0) + cost);
-    };
-    for (std::size_t n = 1; (static_cast<double>(n) - 0.5) * spacing_mm < most_mm; ++n) {
-      const double box_mm = (static_cast<double>(n) - 0.5) * spacing_mm;
-      const auto cost = static_cast<float>(box_mm * box_mm);
-      if (cost >= least) break;
-      look(i - n, cost);
-      look(i + n, cost);
-    }
-    return least;
-  });
-}
-
-// The input is minus the squared radius of the ball at each voxel, or infinity if there is none. The output
-// is positive outside all balls. A ball stays within its label, and so does the path along the axes from its
-// center.
-void unite_balls(VoxelField& balls, double most_mm) {
-  balls.sweep([&](const std::vector<LabelIndex>&, const std::vector<float>& before, std::size_t i,
-                  double spacing_mm) {
-    float least = before[i];
-    for (std::size_t n = 1; static_cast<double>(n) * spacing_mm < most_mm; ++n) {
-      const double far_mm = static_cast<double>(n) * spacing_mm;
-      const auto cost = static_cast<float>(far_mm * far_mm);
-      if (i >= n) least = std::min(least, before[i - n] + cost);
-      if (i + n < before.size()) least = std::min(least, before[i + n] + cost);
-    }
-    return least;
-  });
-}
-
 class ThinParts {
  public:
   ThinParts(const LabelImage& image, double delta_mm, int threads)
@@ -112,7 +28,7 @@ class ThinParts {
         slack_mm_(kSlackOverSide * *std::min_element(image.spacing.begin(), image.spacing.end())),
         least_mm_(kDepthOverDelta * std::max(delta_mm, longest_mm_)),
         depths_(image, static_cast<float>(most_mm() * most_mm()), threads) {
-    find_depths(depths_, most_mm());
+    find_label_depths(depths_, most_mm());
     split_image(threads);
   }
 

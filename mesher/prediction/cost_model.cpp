@@ -150,6 +150,17 @@ double CostModel::cells(const SizeOptions& sizes) const {
   return cells;
 }
 
+double CostModel::growth_with(const ThinLayers& layers, const SizeOptions& sizes) const {
+  const double uniform = cells(sizes);
+  double sum = 0;
+  for (const auto& [delta_mm, share] : shares_of_deltas(image_, layers.deltas)) {
+    SizeOptions there = sizes;
+    there.delta_mm = delta_mm;
+    sum += share * cells(there);
+  }
+  return uniform > 0 ? std::max(1.0, sum / uniform) : 1;
+}
+
 std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
   const std::vector<double> areas_mm2 = areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm);
   std::vector<double> by_label(image_.labels.size());
@@ -197,6 +208,13 @@ double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius
          core;
 }
 
+std::optional<ThinLayers> kept_layers(const LabelImage& image, const SizeOptions& sizes, int threads) {
+  if (sizes.thin == Thin::kLose) return std::nullopt;
+  ThinLayers layers = find_thin_layers(image, sizes, sizes.delta_mm, threads);
+  layers.deltas.graded();
+  return layers;
+}
+
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
   check_voxels(image);
   return estimate(image, options, make_size_grid(image, options.sizes, loop_threads(options.team)).get());
@@ -210,6 +228,8 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options, const 
     const CostModel model(image, loop_threads(options.team), census_of(image, sizes, grid));
     delta_mm = sizes.delta_mm = delta_mm_for(image, sizes, model.census());
     cells = model.cells(sizes);
+    if (const auto layers = kept_layers(image, sizes, loop_threads(options.team)))
+      cells *= model.growth_with(*layers, sizes);
   }
   const ImageByBricks* in_file = by_bricks(image);
   const double bytes_of_image =

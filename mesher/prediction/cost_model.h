@@ -10,6 +10,7 @@
 #include "podm/label_image.h"
 #include "podm/mesh_image.h"
 #include "sizing/size_census.h"
+#include "sizing/thin_layers.h"
 
 namespace podm {
 
@@ -48,6 +49,9 @@ class CostModel {
   /// The number of squares with side delta that cover the interfaces. An interface between two labels counts
   /// from both sides.
   double squares(const SizeOptions& sizes) const;
+  /// The number of cells with these thin layers kept, over that without: the mean, over the interfaces, of
+  /// the number with the delta of a place everywhere. `delta_mm` must not be 0.
+  double growth_with(const ThinLayers& layers, const SizeOptions& sizes) const;
   /// The number of cells of a part of a label and of the interface at it. `radius_mm` is infinity if
   /// unbounded.
   static double cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm);
@@ -79,6 +83,9 @@ class CostModel {
   double volume_mm3_ = 0;
   mutable std::array<std::array<std::optional<double>, kLags.size()>, 3> area_along_mm2_;  // by axis and lag
 };
+
+/// The layers that a run keeps, with graded deltas; none: it keeps none.
+std::optional<ThinLayers> kept_layers(const LabelImage& image, const SizeOptions& sizes, int threads);
 
 /// As estimate() with the options alone, if the grid of the options' sizes already exists; null if there is
 /// no grid. The image may stay in its file. Its memory is then that of a rank if each of `num_ranks` ranks

@@ -83,13 +83,17 @@ Cost predict_cost(const LabelImage& image, const MeshingOptions& options) {
   Cost cost;
   cost.sizes = resolved(image, options.sizes, model, threads);
   cost.cells_of_label = model.cells_by_label(cost.sizes);
+  cost.layers = kept_layers(image, cost.sizes, threads);
+  if (cost.layers) cost.growth_at_layers = model.growth_with(*cost.layers, cost.sizes);
+  for (double& cells : cost.cells_of_label) cells *= cost.growth_at_layers;
   cost.cells = std::accumulate(cost.cells_of_label.begin(), cost.cells_of_label.end(), 0.0);
-  cost.stored_cells = cost.cells + model.background_cells(cost.sizes);
+  cost.stored_cells = cost.cells + cost.growth_at_layers * model.background_cells(cost.sizes);
   cost.mesh_bytes =
       kPeakBytesPerStoredCell * cost.stored_cells + static_cast<double>(kBytesOfOutput) +
       static_cast<double>(bytes_of_threads(static_cast<std::uint64_t>(num_workers(options.team))));
-  cost.mesh_s = kSecondsOfAnyRun + kRunOverTrialTime * trial_seconds_of_work(options) *
-                                       work_of(cost.cells, cost.stored_cells, model.squares(cost.sizes));
+  cost.mesh_s = kSecondsOfAnyRun +
+                kRunOverTrialTime * trial_seconds_of_work(options) *
+                    work_of(cost.cells, cost.stored_cells, cost.growth_at_layers * model.squares(cost.sizes));
   return cost;
 }
 

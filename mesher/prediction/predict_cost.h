@@ -2,10 +2,12 @@
 // presently takes for a mesh of a phantom.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "isosurface/isosurface.h"
 #include "podm/mesh_image.h"
+#include "sizing/thin_layers.h"
 
 namespace podm {
 
@@ -15,6 +17,8 @@ struct Cost {
   double cells = 0;                    ///< of the mesh
   double stored_cells = 0;             ///< includes the background; determines memory and seconds
   double mesh_bytes = 0;               ///< at the peak, without image and transform
+  std::optional<ThinLayers> layers;    ///< that the run keeps
+  double growth_at_layers = 1;         ///< of all numbers of cells, which include it
   double mesh_s = 0;                   ///< of all phases after the transform, including output
 };
 

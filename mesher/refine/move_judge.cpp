@@ -71,9 +71,24 @@ bool MoveJudge::reaches(CellId c, const Point& from) const {
   return !(beyond > 0 && beyond * beyond > 4 * r2 * s2);  // also true if the radius is NaN, not certified
 }
 
+// delta(z) >= delta(p) - L |z - p|, so |z - p| >= delta(z) implies (1 + L) |z - p| >= delta(p).
 bool MoveJudge::may_be_uncovered(CellId c, const Point& from) const {
-  return farthest_in_both(move_.point(), ball_of(c), covered_from(from)) >=
-         parameters_.delta_mm * (1 - kMargin);
+  const double least_mm =
+      parameters_.deltas == nullptr
+          ? parameters_.delta_mm * (1 - kMargin)
+          : parameters_.deltas->at(move_.point()) * (1 - DeltaField::kMargin) / (1 + DeltaField::kSlope);
+  return farthest_in_both(move_.point(), ball_of(c), covered_from(from)) >= least_mm;
+}
+
+bool MoveJudge::was_covered(const Point& z, const Point& from) const {
+  const double delta_mm = parameters_.deltas == nullptr ? parameters_.delta_mm : parameters_.deltas->at(z);
+  return distance(z, from) <= delta_mm * (1 + kMargin);
+}
+
+// delta(z) <= delta(p) + L |z - p|, so |z - p| < delta(z) implies (1 - L) |z - p| < delta(p).
+Ball MoveJudge::covered_from(const Point& p) const {
+  if (parameters_.deltas == nullptr) return {p, parameters_.delta_mm * (1 + kMargin)};
+  return {p, parameters_.deltas->at(p) * (1 + DeltaField::kMargin) / (1 - DeltaField::kSlope)};
 }
 
 }  // namespace podm

@@ -49,9 +49,7 @@ class MoveJudge {
   /// new place, and was_covered() if it covered z.
   bool reaches(CellId c, const Point& from) const;
   bool may_be_uncovered(CellId c, const Point& from) const;
-  bool was_covered(const Point& z, const Point& from) const {
-    return distance(z, from) <= parameters_.delta_mm * (1 + kMargin);
-  }
+  bool was_covered(const Point& z, const Point& from) const;
   std::optional<Point> on_isosurface(const Point& p, double radius_mm) const {
     return rules_.settled(p, radius_mm);
   }
@@ -61,7 +59,8 @@ class MoveJudge {
   bool all_of_planned(const Visit& visit) const;
 
   Ball ball_of(CellId c) const;
-  Ball covered_from(const Point& p) const { return {p, parameters_.delta_mm * (1 + kMargin)}; }
+  /// Contains the samples that an isosurface vertex at p covers.
+  Ball covered_from(const Point& p) const;
 
   VertexMove& move_;
   RulesOn<VertexMove> rules_;

@@ -24,7 +24,8 @@ RulesOn<Cells>::RulesOn(Cells& mesh, const Isosurface& isosurface, const Paramet
       isosurface_(isosurface),
       parameters_(parameters),
       squared_delta_(square(parameters.delta_mm)),
-      squared_two_delta_(square(2 * parameters.delta_mm)) {
+      squared_two_delta_(square(2 * parameters.delta_mm)),
+      has_deltas_(parameters.deltas != nullptr) {
   if (reads) counted_.emplace(isosurface.counted(*reads));
 }
 
@@ -53,13 +54,25 @@ double RulesOn<Cells>::distance_lower_bound(const Point& p, double radius) const
   return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
+template <class Cells>
+double RulesOn<Cells>::squared_delta_at_either(const Point& p, const Point& q) const {
+  return square(std::min(delta_at(p), delta_at(q)));
+}
+
+template <class Cells>
+double RulesOn<Cells>::least_delta_in_ball(const Point& center, double radius) const {
+  return parameters_.deltas->least_within(radius, delta_at(center));
+}
+
 // If r < delta/2, an isosurface vertex of the cell is within 2r < delta of z. R1 then does not apply, nor
 // does R2.
 template <class Cells>
 bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
   return 4 * squared_radius < squared_delta_ &&
          std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
+                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; }) &&
+         (!has_deltas_ ||
+          4 * squared_radius < square(least_delta_in_ball(cell.center, std::sqrt(squared_radius))));
 }
 
 template <class Cells>
@@ -76,9 +89,10 @@ Examination RulesOn<Cells>::examine(CellId c) const {
   t.label = label;
   t.isosurface_distance = bound;
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
-  const Cover cover = covered_by(cell);
+  const Cover cover =
+      covered_by(cell, has_deltas_ ? square(least_delta_in_ball(center, radius)) : squared_delta_);
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });
-  t.is_covered = t.nearest && cover.contains(t.nearest->point);
+  t.is_covered = t.nearest && is_covered_by(cell, cover, t.nearest->point);
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
@@ -86,9 +100,9 @@ Examination RulesOn<Cells>::examine(CellId c) const {
 
 // The balls around the cell's own isosurface vertices.
 template <class Cells>
-Cover RulesOn<Cells>::covered_by(const Cell& cell) const {
+Cover RulesOn<Cells>::covered_by(const Cell& cell, double squared_radius) const {
   Cover cover;
-  cover.squared_radius = squared_delta_;
+  cover.squared_radius = squared_radius;
   for (const VertexId v : cell.vertices) {
     if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = &mesh_.point(v);
   }
@@ -96,9 +110,17 @@ Cover RulesOn<Cells>::covered_by(const Cell& cell) const {
 }
 
 template <class Cells>
+bool RulesOn<Cells>::is_covered_by(const Cell& cell, const Cover& cover, const Point& z) const {
+  if (cover.contains(z)) return true;
+  return has_deltas_ && std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                                    [&](VertexId v) { return is_covered(z, v); });
+}
+
+template <class Cells>
 bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
-  return mesh_.vertex(by).kind == VertexKind::kIsosurface &&
-         squared_distance(mesh_.point(by), z) < squared_delta_;
+  if (mesh_.vertex(by).kind != VertexKind::kIsosurface) return false;
+  const double squared = squared_distance(mesh_.point(by), z);
+  return squared < squared_delta_ && (!has_deltas_ || squared < square(delta_at(z)));
 }
 
 template <class Cells>
@@ -128,7 +150,10 @@ bool RulesOn<Cells>::is_covered_beside(CellId c, const Point& z) const {
 
 template <class Cells>
 std::optional<Point> RulesOn<Cells>::r2_center(const Examination& t) const {
-  if (!t.nearest || t.squared_radius < squared_two_delta_) return std::nullopt;
+  if (!t.nearest) return std::nullopt;
+  if (t.squared_radius < squared_two_delta_ &&
+      (!has_deltas_ || t.squared_radius < 4 * squared_delta_at_either(t.center, t.nearest->point)))
+    return std::nullopt;
   const Box& box = parameters_.clamp_box;
   return Point{std::clamp(t.center.x, box.low.x, box.high.x), std::clamp(t.center.y, box.low.y, box.high.y),
                std::clamp(t.center.z, box.low.z, box.high.z)};
@@ -265,9 +290,9 @@ bool RulesOn<Cells>::is_large_in_shell(const Examination& t) const {
          is_in(parameters_.clamp_box, t.center) && distance_lower_bound(t.center, reach_mm) < reach_mm;
 }
 
-// With a grid, the smaller of the bounds at both points counts. Otherwise samples where cells are large would
-// remove vertices inserted where cells are small, again and again. Outside the object the grid's bound may be
-// below the smallest bound inside, which then applies.
+// With a grid, or with deltas by place, the smaller of the bounds at both points counts. Otherwise samples
+// where cells are large would remove vertices inserted where cells are small, again and again. Outside the
+// object the grid's bound may be below the smallest bound inside, which then applies.
 template <class Cells>
 bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
   if (mesh_.vertex(v).kind != VertexKind::kCircumcenter) return false;
@@ -275,6 +300,7 @@ bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
   const Point& p = mesh_.point(v);
   const double squared = squared_distance(p, z);
   if (squared >= squared_two_delta_) return false;
+  if (has_deltas_ && squared >= 4 * squared_delta_at_either(p, z)) return false;
   return !sizes.has_grid() || squared < sizes.smallest_squared_radius() ||
          (squared < sizes.squared_radius_of_grid(z) && squared < sizes.squared_radius_of_grid(p));
 }

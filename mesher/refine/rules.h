@@ -31,15 +31,33 @@
 // chain of such insertions. Without them m = s. Therefore refinement terminates, on non-manifold interfaces
 // too. Rules are tightened by kMargin (R5 by kGridMargin on a grid), which exceeds the rounding errors unless
 // the object is a million radii from the origin.
+//
+// Delta by place (sizing/delta_field.h). If thin layers are kept, delta is a function of the place with the
+// Lipschitz constant L = 1/4 and the least value delta_0:
+//   R1  keeps delta(z) from isosurface vertices
+//   R2  applies if r is at least twice the smaller one of delta(c) and delta(z), and keeps r
+//   R6  removes circumcenter vertices v closer to z than twice the smaller one of delta(z) and delta(v): with
+//       delta(z) alone, samples where delta is large would remove vertices inserted where it is small
+// The proof holds with s = min(delta_0, r_t / k): R1 keeps delta_0 >= s, R2 and R6 keep 2 delta_0, and R3 to
+// R5 do not depend on delta. It also holds for a mesh that was refined before with larger deltas, as long as
+// delta_0 is the same (algorithms/mend_topology.h): all rules kept at least as much then.
+//   Cover: an isosurface point p has an isosurface vertex within 11 delta(p). It lies in the ball of a cell,
+//   |p - c| <= r < 2 delta(c) as R2 does not apply, thus delta(c) < delta(p) + 2 L delta(c), which is
+//   delta(c) < 2 delta(p). Further |c - z| <= |p - c| < 4 delta(p), and delta(z) < delta(p) + 8 L delta(p) =
+//   3 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 4 + 4 + 3. With one delta it is 5 delta.
+// R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
+// measured.
 #pragma once
 
 #include <concepts>
+#include <memory>
 #include <optional>
 
 #include "delaunay/mesh.h"
 #include "delaunay/vertex_move.h"
 #include "isosurface/isosurface.h"
 #include "runtime/shared_word.h"
+#include "sizing/delta_field.h"
 #include "sizing/size_field.h"
 
 namespace podm {
@@ -49,7 +67,7 @@ inline constexpr double kMargin = 1e-9;  // relative
 enum class Rule { kR1, kR2, kR3, kR4, kR5 };
 
 struct Parameters {
-  double delta_mm = 0;
+  double delta_mm = 0;  // if delta depends on the place, no delta is larger
   SizeField sizes;
   Box clamp_box;          // circumcenters beyond it are moved onto it, see virtual_box.h
   double spacing_mm = 0;  // s
@@ -57,6 +75,7 @@ struct Parameters {
   /// `shell_radius_mm`, for circumcenters up to `shell_mm` from the isosurface. Both are less where a size
   /// grid requests smaller cells. 0: there is no such shell.
   double shell_mm = 0, shell_radius_mm = 0;
+  std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta is the same everywhere
 };
 
 /// The data that the rules need about a cell, requested from the oracle once.
@@ -150,13 +169,18 @@ class RulesOn {
   LabelIndex look_up_label(CellId c) const;
   LabelAndBound label_and_bound(CellId c, double radius) const;
   double distance_lower_bound(const Point& p, double radius) const;
-  Cover covered_by(const Cell& cell) const;
+  Cover covered_by(const Cell& cell, double squared_radius) const;
+  bool is_covered_by(const Cell& cell, const Cover& cover, const Point& z) const;
   bool is_covered_beside(CellId c, const Point& z) const;
   FacetMask facets_tested_before(CellId c) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_restricted(const Examination& t, CellId neighbor) const;
   std::optional<SurfaceCenter> surface_center(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
+  // These three need deltas by place.
+  double delta_at(const Point& p) const { return parameters_.deltas->at(p); }
+  double squared_delta_at_either(const Point& p, const Point& q) const;
+  double least_delta_in_ball(const Point& center, double radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
 
@@ -164,7 +188,8 @@ class RulesOn {
   const Isosurface& isosurface_;
   std::optional<Oracle<CountedReads>> counted_;
   const Parameters& parameters_;
-  double squared_delta_, squared_two_delta_;
+  double squared_delta_, squared_two_delta_;  // of the largest delta
+  bool has_deltas_;                           // delta depends on the place
 };
 
 extern template class RulesOn<Mesh>;

@@ -26,6 +26,7 @@ class Run {
     Refinement refinement = refine(report);
     phases_.report_refinement(refinement, report);
     phases_.optimize(*refinement.mesh, report);
+    phases_.compare_topology(*refinement.mesh, report);
     const auto extract = [&](Space space) {
       result.mesh = extract_mesh(*refinement.mesh, phases_.isosurface(), space, phases_.loop_threads(),
                                  report.guarantees.facet_vertices);

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "algorithms/memory_model.h"
+#include "algorithms/mend_topology.h"
 #include "image/foreground.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
@@ -17,6 +18,7 @@
 #include "runtime/virtual_threads.h"
 #include "sizing/default_sizes.h"
 #include "sizing/make_size_grid.h"
+#include "sizing/thin_layers.h"
 #include "smoothing/smooth_interfaces.h"
 #include "workers/accounting.h"
 
@@ -116,6 +118,8 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
   announce("refine", 0, 0);
   const auto num_workers = static_cast<std::uint64_t>(team_.size().num_workers);
   const std::uint64_t bytes = memory_of_run(options_.limits);
+  std::optional<ThinLayers> thin;
+  if (sizes.thin == Thin::kKeep) thin = find_thin_layers(image_, sizes, sizes.delta_mm, loop_threads_);
   const Problem problem{
       .isosurface = *isosurface_,
       .object = object_,
@@ -124,6 +128,8 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
       .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor, options_.log != nullptr),
       .memory_bytes = bytes,
       .dihedral_bounds = dihedral_bounds(),
+      .deltas = thin ? thin->deltas.graded() : nullptr,
+      .thin = thin ? &*thin : nullptr,
       .observe_perturbation = [&](double fraction, std::uint64_t cells) {
         announce("perturb", fraction, cells);
       }};
@@ -151,6 +157,7 @@ void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& repor
   report.num_leaves = refinement.num_leaves;
   report.schedule = std::move(refinement.schedule);
   report.perturbation = refinement.perturbation;
+  report.topology = std::move(refinement.topology);
   team_.report_to(report, std::move(refinement.pages));
 }
 
@@ -196,6 +203,18 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   report.phases_s["optimize"] = seconds_() - start_s;
 }
 
+// Perturbation and optimisation may have changed the topology.
+void PhasesOfRun::compare_topology(Mesh& mesh, MeshingReport& report) const {
+  if (!report.topology) return;
+  if (report.perturbation || report.optimization) {
+    const double start_s = seconds_();
+    label_cells(mesh, *isosurface_, loop_threads_);
+    compare_again(mesh, image_, *report.topology);
+    report.phases_s["measure"] += seconds_() - start_s;
+  }
+  report.guarantees.topology = report.topology->differences.size();
+}
+
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
   const double start_s = seconds_();
@@ -208,9 +227,10 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   announce("measure", 0, 0);
   const double start_s = seconds_();
   measure_quality(mesh, image_, *size_field_, loop_threads_, report);
-  report.phases_s["measure"] = seconds_() - start_s;
+  report.phases_s["measure"] += seconds_() - start_s;
   mesh.is_optimized = report.optimization.has_value();
   mesh.smoothing_mm = options_.smoothing_mm;
+  if (report.topology) mesh.topology_differences = report.topology->differences;
   promise_dihedral_bounds(mesh, report);
   if (options_.space != Space::kVoxel) return;
   const double begin_s = seconds_();

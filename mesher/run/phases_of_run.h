@@ -48,6 +48,9 @@ class PhasesOfRun {
   /// Improves the refined mesh, if that is requested and refinement was not ended early.
   void optimize(Mesh& mesh, MeshingReport& report) const;
 
+  /// Compares the finished mesh with the image if thin layers are kept.
+  void compare_topology(Mesh& mesh, MeshingReport& report) const;
+
   /// Calls extract(space), which must make the mesh in mm.
   void extract(const std::function<void(Space)>& extract, MeshingReport& report) const;
   /// Measures the mesh and converts it from mm to the requested space.

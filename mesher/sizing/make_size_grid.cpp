@@ -12,6 +12,7 @@
 #include "sizing/default_sizes.h"
 #include "sizing/graded_grid.h"
 #include "sizing/interface_distance.h"
+#include "sizing/thin_layers.h"
 
 namespace podm {
 
@@ -178,7 +179,8 @@ void bound_near(const InterfaceDistances& distances, const InterfaceSize& near, 
 std::uint64_t bytes_of_size_grid(const LabelImage& image, const SizeOptions& sizes) {
   std::uint64_t volumes = sizes.grade > 0 ? 1 : 0;
   if (!sizes.near.empty()) volumes += sizes.near.size() + 1;  // and the distances for one direction of faces
-  return volumes * image.num_voxels() * sizeof(float);
+  const std::uint64_t layers = sizes.thin == Thin::kKeep ? kBytesPerVoxelOfLayers : 0;
+  return (volumes * sizeof(float) + layers) * image.num_voxels();
 }
 
 ScalarGrid size_image_grid(const LabelImage& image, const std::shared_ptr<const SizeImage>& sizes) {

@@ -22,7 +22,7 @@ RECORD = {
     "labels": [{"value": 1, "volume_mm3": 13.5}, {"value": 2, "volume_mm3": 13.5}], "quality": QUALITY,
     "perturbed": None, "optimization": None,
     "guarantees": dict.fromkeys(("radius_edge", "facet_angle", "radius", "facet_vertices", "orientation",
-                                 "missing_labels"), 0)}
+                                 "missing_labels", "topology"), 0)}
 
 
 def perturbed(low, left=0, **unmoved):

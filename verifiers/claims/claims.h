@@ -38,5 +38,7 @@ ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency,
                                    const Options& options);
 ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                            const Options& options);
+/// Not on ranks.
+ClaimResult check_topology(const Mesh& mesh, const Adjacency& adjacency, const Image& image);
 
 }  // namespace podm::verify

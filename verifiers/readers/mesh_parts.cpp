@@ -44,6 +44,34 @@ std::optional<Space> space_of(std::string_view word) {
   return std::nullopt;
 }
 
+// "topology 1" or "differs split 3 10 20 30". Returns false for all other words.
+bool read_topology_promise(std::string_view words, Mesh& mesh) {
+  if (auto number = after_prefix(words, "topology ")) {
+    const auto count = take_integer(*number);
+    if (!count || *count < 0 || !number->empty()) return false;
+    mesh.promised_topology = static_cast<std::uint64_t>(*count);
+    return true;
+  }
+  auto rest = after_prefix(words, "differs ");
+  if (!rest) return false;
+  ListedDifference listed;
+  const std::size_t blank = rest->find(' ');
+  if (blank == 0 || blank == std::string_view::npos) return false;
+  listed.kind = rest->substr(0, blank);
+  rest->remove_prefix(blank + 1);
+  const auto label = take_integer(*rest);
+  if (!label) return false;
+  listed.label = *label;
+  for (std::int64_t& at : listed.voxel) {
+    const auto index = take_integer(*rest);
+    if (!index) return false;
+    at = *index;
+  }
+  if (!rest->empty()) return false;
+  mesh.listed_differences.push_back(std::move(listed));
+  return true;
+}
+
 void read_promise(const MeshFile& file, const std::string& place, std::string_view words, Mesh& mesh) {
   if (const auto claim = after_prefix(words, "unclaimed ")) {
     mesh.unclaimed.emplace(*claim);
@@ -62,6 +90,7 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
       return;
     }
   }
+  if (read_topology_promise(words, mesh)) return;
   file.refuse(place, fmt::format("the promise '{}' is unknown", words));
 }
 

@@ -16,6 +16,8 @@ void take_head(const Mesh& first, Mesh& whole) {
   whole.label_colours = first.label_colours;
   whole.unclaimed = first.unclaimed;
   whole.promised_dihedral_deg = first.promised_dihedral_deg;
+  whole.promised_topology = first.promised_topology;
+  whole.listed_differences = first.listed_differences;
   whole.smoothing_mm = first.smoothing_mm;
 }
 

@@ -126,6 +126,24 @@ class MeshBuilder {
     mesh_.is_optimized = file_.unclaimed.contains("delaunay");
     mesh_.dihedral_bounds_deg = file_.promised_dihedral_deg;
     mesh_.smoothing_mm = file_.smoothing_mm.value_or(0);
+    if (file_.promised_topology) take_listed_differences();
+  }
+
+  void take_listed_differences() {
+    auto& listed = mesh_.topology_differences.emplace();
+    for (const verify::ListedDifference& each : file_.listed_differences) {
+      TopologyReport::Difference difference;
+      const auto kinds = Names<TopologyDifference>::kAll;
+      const auto kind =
+          std::find_if(kinds.begin(), kinds.end(), [&](const auto& of) { return of.second == each.kind; });
+      if (kind == kinds.end())
+        throw InputError(path_ + ": the promise 'differs " + each.kind + "' is unknown");
+      difference.kind = kind->first;
+      difference.label.value = static_cast<std::uint32_t>(each.label);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        difference.voxel[axis] = static_cast<int>(each.voxel[axis]);
+      listed.push_back(difference);
+    }
   }
 
   void orient_cells() {

@@ -77,6 +77,20 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   return plan;
 }
 
+namespace {
+
+// Null if no layer is thin.
+Json thinnest_json(const ThinLayers& layers, const LabelImage& image) {
+  if (!layers.thinnest) return nullptr;
+  const auto& [label, voxel, thickness_mm] = *layers.thinnest;
+  return {{"label", image.labels[label].value},
+          {"thickness_mm", thickness_mm},
+          {"place_mm", place_mm(image, voxel)},
+          {"voxel", {voxel.i, voxel.j, voxel.k}}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
   Json labels = Json::array(), thin = Json::array();
   for (std::size_t i = 1; i < image.labels.size(); ++i)
@@ -91,6 +105,12 @@ nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
                     {"volume_mm3", static_cast<double>(part.num_voxels) * voxel_volume_mm3(image)},
                     {"place_mm", place_mm(image, part.deepest)},
                     {"voxel", {part.deepest.i, part.deepest.j, part.deepest.k}}});
+  Json layers;
+  if (plan.cost.layers)
+    layers = {{"voxels", plan.cost.layers->num_voxels},
+              {"least_delta_mm", plan.cost.layers->deltas.least_mm()},
+              {"growth_of_cells", plan.cost.growth_at_layers},
+              {"thinnest", thinnest_json(*plan.cost.layers, image)}};
   return {{"radius_mm", plan.cost.sizes.radius_mm},
           {"delta_mm", plan.cost.sizes.delta_mm},
           {"threads", plan.threads},
@@ -99,7 +119,8 @@ nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
           {"seconds", plan.seconds()},
           {"phases_s", {{"read", plan.read_s}, {"transform", plan.transform_s}, {"mesh", plan.cost.mesh_s}}},
           {"labels", labels},
-          {"thin_parts", thin}};
+          {"thin_parts", thin},
+          {"kept_layers", layers}};
 }
 
 namespace {
@@ -129,6 +150,20 @@ std::string labels_text(const Plan& plan, const LabelImage& image) {
                         image.labels[i].name);
   }
   return text;
+}
+
+std::string kept_text(const Plan& plan, const LabelImage& image) {
+  if (!plan.cost.layers) return "";
+  const ThinLayers& layers = *plan.cost.layers;
+  if (!layers.thinnest) return "kept       no layer is thinner than delta can show\n";
+  const auto& [label, voxel, thickness_mm] = *layers.thinnest;
+  const auto at = place_mm(image, voxel);
+  return fmt::format(
+      "kept       layers of {} voxels, with deltas down to {:.4g} mm and {:.3g} times the cells; the\n"
+      "           thinnest is {:.4g} mm thick: label {} at {:.6g} {:.6g} {:.6g} mm; refinements that mend\n"
+      "           the topology add cells\n",
+      layers.num_voxels, std::max(layers.deltas.least_mm(), kDeltaOverThickness * thickness_mm),
+      plan.cost.growth_at_layers, thickness_mm, image.labels[label].value, at[0], at[1], at[2]);
 }
 
 std::string thin_text(const Plan& plan, const LabelImage& image) {
@@ -161,7 +196,7 @@ std::string thin_text(const Plan& plan, const LabelImage& image) {
 }  // namespace
 
 std::string plan_text(const Plan& plan, const LabelImage& image) {
-  return cost_text(plan) + labels_text(plan, image) + thin_text(plan, image);
+  return cost_text(plan) + labels_text(plan, image) + thin_text(plan, image) + kept_text(plan, image);
 }
 
 }  // namespace podm::cli

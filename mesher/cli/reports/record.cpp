@@ -22,7 +22,8 @@ PODM_TO_JSON(SmoothingReport::OfLabel, value, voxels_mm3, smoothed_mm3, voxels_c
 PODM_TO_JSON(SmoothingReport, width_mm, labels)
 PODM_TO_JSON(Quality, max_radius_edge, min_facet_angle_deg, max_facet_angle_deg, min_dihedral_deg,
              max_dihedral_deg, max_radius_mm, shortest_edge_mm)
-PODM_TO_JSON(Guarantees, radius_edge, facet_angle, radius, facet_vertices, orientation, missing_labels)
+PODM_TO_JSON(Guarantees, radius_edge, facet_angle, radius, facet_vertices, orientation, missing_labels,
+             topology)
 
 namespace cli {
 namespace {
@@ -233,6 +234,25 @@ Json optimization_of(const MeshingReport& report) {
           {"successes", counts_of(done.successes)}};
 }
 
+Json thin_layers_of(const MeshingReport& report) {
+  if (!report.topology) return nullptr;
+  const TopologyReport& of = *report.topology;
+  Json differences = Json::array();
+  for (const TopologyReport::Difference& each : of.differences)
+    differences.push_back({{"kind", to_string(each.kind)},
+                           {"label", each.label.value},
+                           {"name", each.label.name},
+                           {"voxel", each.voxel},
+                           {"ras_mm", each.ras_mm},
+                           {"component", {{"low", each.low}, {"high", each.high}}},
+                           {"of_image", each.of_image},
+                           {"of_mesh", each.of_mesh}});
+  return {{"components", of.components},         {"ambiguous_places", of.ambiguous_places},
+          {"ambiguous", of.ambiguous},           {"differences_at_first", of.differences_at_first},
+          {"differences", differences},          {"passes", of.passes},
+          {"least_delta_mm", of.least_delta_mm}, {"thin_voxels", of.thin_voxels}};
+}
+
 // The inputs that podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
 Json verify_of(const MeshRun& run) {
   if (run.mesh.cells == 0) return nullptr;
@@ -245,6 +265,7 @@ Json promises_of(const MeshingReport& report) {
   Json claims = {"structure", "radius_edge", "boundary_angles",  "size",    "conformity",
                  "surface",   "labels",      "surface_vertices", "fidelity"};
   if (report.promised_dihedral_deg) claims.push_back("dihedral");
+  if (report.topology) claims.push_back("topology");
   return claims;
 }
 
@@ -335,6 +356,7 @@ Json record(const MeshRun& run) {
       {"perturbed", perturbation_of(report)},
       {"smoothing", or_null(report.smoothing)},
       {"optimization", optimization_of(report)},
+      {"thin_layers", thin_layers_of(report)},
       {"promised_dihedral_deg", or_null(report.promised_dihedral_deg)},
       {"guarantees", report.guarantees},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},

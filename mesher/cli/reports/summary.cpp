@@ -107,6 +107,36 @@ std::string optimization_text(const MeshingReport& report) {
   return text;
 }
 
+std::string difference_text(const TopologyReport::Difference& each) {
+  std::string numbers;
+  if (each.kind == TopologyDifference::kHandles || each.kind == TopologyDifference::kCavities) {
+    const std::size_t i = each.kind == TopologyDifference::kHandles ? 1 : 2;
+    numbers = fmt::format(" {} instead of {}", each.of_mesh[i], each.of_image[i]);
+  } else if (each.kind == TopologyDifference::kSplit) {
+    numbers = fmt::format(" into {}", each.of_mesh[0]);
+  }
+  return fmt::format("           {}{}: label {}{} at voxel ({}), {:.4g} {:.4g} {:.4g} mm\n",
+                     to_string(each.kind), numbers, each.label.value,
+                     each.label.name.empty() ? "" : fmt::format(" ({})", each.label.name),
+                     fmt::join(each.voxel, ", "), each.ras_mm[0], each.ras_mm[1], each.ras_mm[2]);
+}
+
+std::string topology_text(const MeshingReport& report) {
+  if (!report.topology) return "";
+  constexpr std::size_t kMostListed = 20;  // the record has all
+  const TopologyReport& of = *report.topology;
+  std::string text = fmt::format(
+      "topology   {} components, {} differ, {} before {} refinement{} down to a delta of {:.4g} mm\n"
+      "           {} ambiguous places of the image explain {} more differences\n",
+      of.components, of.differences.size(), of.differences_at_first, of.passes, of.passes == 1 ? "" : "s",
+      of.least_delta_mm, of.ambiguous_places, of.ambiguous);
+  for (std::size_t i = 0; i < std::min(kMostListed, of.differences.size()); ++i)
+    text += difference_text(of.differences[i]);
+  if (of.differences.size() > kMostListed)
+    text += fmt::format("           and {} more\n", of.differences.size() - kMostListed);
+  return text;
+}
+
 std::string smoothing_text(const MeshRun& run) {
   if (!run.report.smoothing) return "";
   const SmoothingReport& done = *run.report.smoothing;
@@ -149,8 +179,9 @@ std::string sizes_by_place_text(const MeshRun& run) {
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
-  for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine",
-                            "exchange", "closing", "perturb", "optimize", "extract", "measure", "write"})
+  for (const char* phase :
+       {"read", "draw", "transform", "allocate", "initial", "octree", "refine", "exchange", "closing", "mend",
+        "perturb", "optimize", "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +
@@ -169,7 +200,7 @@ std::string summary(const MeshRun& run) {
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
   text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report.quality) +
-          perturbation_text(report) + optimization_text(report);
+          perturbation_text(report) + optimization_text(report) + topology_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -91,6 +91,13 @@ struct Names<GmshVersion> {
   static constexpr std::array kAll{std::pair{GmshVersion::k4_1, "4.1"}, std::pair{GmshVersion::k2_2, "2.2"}};
 };
 
+/// The fate of layers thinner than delta: kept, by smaller deltas there, or lost.
+enum class Thin { kKeep, kLose };
+template <>
+struct Names<Thin> {
+  static constexpr std::array kAll{std::pair{Thin::kKeep, "keep"}, std::pair{Thin::kLose, "lose"}};
+};
+
 /// The operations of optimisation: replace the cells around an edge or on both sides of facets, move a
 /// vertex, fill a cavity with any cells, fill a cavity with any cells and a new vertex, and give a flat cell
 /// on an interface to another label.

@@ -20,6 +20,8 @@ namespace podm {
 class OperationLogWriter;
 
 inline constexpr int kMostThreads = 1024;
+inline constexpr const char* kThinNotOnRanks =
+    "the topologies of image and mesh are compared on a whole mesh";
 
 /// A bound on the cells whose circumcenter is within a width of the interface between two sets of labels. The
 /// interface here consists of the faces between their voxels. Labels are given by value; the background has
@@ -48,6 +50,10 @@ struct SizeOptions {
   /// Surface sampling distance, mm. 0: default_delta_mm() of the least radius. Local sizes count with their
   /// largest bound, if every place has one.
   double delta_mm = 0;
+  /// Layers of labels thinner than delta are kept or lost (sizing/thin_layers.h).
+  Thin thin = Thin::kLose;
+  /// The least delta anywhere if thin layers are kept, mm. 0: half of a voxel's shortest side.
+  double delta_least_mm = 0;
   /// If positive, the mesher chooses radius_mm, which must be 0, for a mesh of about this number of cells.
   /// The image's factor is then such that its largest radius in the object is the same.
   std::uint64_t target_elements = 0;
@@ -70,6 +76,19 @@ struct SizeOptions {
                 .record = "delta_mm",
                 .uses = kInAll | kInPlan,
                 .quantity = "length in mm"}),
+        option(&S::thin, "thin", "", kSurfaces,
+               "layers and gaps thinner than delta: keep them, with a delta that follows their\n"
+               "thickness, compare the topology of each label with the image's, and refine where\n"
+               "they differ; or lose them",
+               {.record = "thin", .uses = kInAll | kInPlan, .not_on_ranks = kThinNotOnRanks}),
+        option(&S::delta_least_mm, "delta-least", "MM", kSurfaces,
+               "least sampling distance where thin layers are kept, mm",
+               {.unset = "half of a voxel's shortest side",
+                .record = "delta_least_mm",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = kThinNotOnRanks,
+                .quantity = "length in mm",
+                .needs = "thin"}),
         option(&S::target_elements, "target-elements", "N", kSize,
                "choose the radius, and the factor of --size-image, for this number of cells",
                {.unset = "none", .uses = kInAll | kInPlan, .excludes = "radius"}),

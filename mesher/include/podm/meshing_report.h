@@ -12,6 +12,7 @@
 #include "podm/choices.h"
 #include "podm/counters.h"
 #include "podm/perturbation_report.h"
+#include "podm/topology_report.h"
 
 namespace podm {
 
@@ -24,8 +25,10 @@ struct Guarantees {
   /// Cells that became flat or inverted when coordinates were rounded for output.
   std::uint64_t orientation = 0;
   std::uint64_t missing_labels = 0;  ///< labels of more than 1000 voxels without a cell
+  /// Differences of topology from the image that are left, if thin layers are kept.
+  std::uint64_t topology = 0;
   bool all_met() const {
-    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels == 0;
+    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels + topology == 0;
   }
 };
 
@@ -127,8 +130,8 @@ struct SmoothingReport {
 struct MeshingReport {
   /// Seconds per phase of the returned mesh. "smooth" if smoothing was requested; "transform"; "allocate":
   /// store, pools, workers and threads; "initial", "octree", "refine", "closing" (kPodm and kPodmHome have
-  /// only "refine"); "perturb" if R7 was requested; "optimize"; "extract"; "measure": quality and guarantees.
-  /// "calibrate" is the whole search for the radius of a target.
+  /// only "refine"); "mend" if thin layers are kept; "perturb" if R7 was requested; "optimize"; "extract";
+  /// "measure": quality and guarantees. "calibrate" is the whole search for the radius of a target.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the radius used; 0 when unbounded
   double delta_mm = 0;                     ///< the delta used
@@ -167,6 +170,7 @@ struct MeshingReport {
     std::map<std::string, double> constants;
   };
   std::optional<SimulatedMachine> simulated_machine;
+  std::optional<TopologyReport> topology;          ///< set if thin layers are kept
   std::optional<PerturbationReport> perturbation;  ///< set if R7 was requested and reached
   std::vector<std::string> warnings;
 };

@@ -8,6 +8,7 @@
 
 #include "podm/choices.h"
 #include "podm/label_image.h"
+#include "podm/topology_report.h"
 
 namespace podm {
 
@@ -28,6 +29,8 @@ struct TetMesh {
   double smoothing_mm = 0;
   /// Least and largest dihedral angle, degrees, that all cells keep, if bounds were requested and reached.
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
+  /// If thin layers were kept, all differences of topology from the image that are left.
+  std::optional<std::vector<TopologyReport::Difference>> topology_differences = {};
 };
 
 }  // namespace podm
