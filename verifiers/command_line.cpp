@@ -175,6 +175,11 @@ void declare_claims(CLI::App& app, TypedCommand& command) {
              "labels reach as far, as its rules prove; podm mesh prints and records it\n"
              "[default: none]")
       ->check(positive());
+  add_option(app, "--lines-delta", "MM", options.lines_delta_mm,
+             "lines: distance at which a mesh of podm mesh --lines samples lines\n"
+             "[default: as the file promises]")
+      ->check(positive())
+      ->needs(image);
 }
 
 void declare_report(CLI::App& app, TypedCommand& command, Program program) {

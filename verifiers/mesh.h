@@ -57,7 +57,8 @@ struct Mesh {
   /// promises nothing about the topology.
   std::optional<std::uint64_t> promised_topology;
   std::vector<ListedDifference> listed_differences;
-  std::optional<double> smoothing_mm;  ///< width by which the image was smoothed before meshing
+  std::optional<double> smoothing_mm;             ///< width by which the image was smoothed before meshing
+  std::optional<double> promised_lines_delta_mm;  ///< distance at which lines of three labels are sampled
   /// The part of the mesh that this rank holds (ranks/part.h); null: the whole mesh.
   std::shared_ptr<const Part> part;
 };

@@ -23,6 +23,8 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
       return true;
     case Needs::kImage:
       return !options.image_path.empty();
+    case Needs::kLines:
+      return !options.image_path.empty() && (options.lines_delta_mm || mesh.promised_lines_delta_mm);
     case Needs::kBound:
       return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty() ||
              !options.interface_sizes.empty();
@@ -32,6 +34,10 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
       return !options.image_path.empty() && mesh.promised_topology && mesh.part == nullptr;
   }
   return false;
+}
+
+bool needs_image(Needs needs) {
+  return needs == Needs::kImage || needs == Needs::kPromisedImage || needs == Needs::kLines;
 }
 
 // True if all vertex ids and coordinates are sound, which every claim except structure relies on.
@@ -104,6 +110,7 @@ const std::vector<Claim>& all_claims() {
       {"labels", Needs::kImage, [](I i, A, O o) { return check_labels(i.mesh, *i.image, o); }},
       {"surface_vertices", Needs::kImage,
        [](I i, A a, O o) { return check_surface_vertices(i.mesh, a, *i.image, o); }},
+      {"lines", Needs::kLines, [](I i, A a, O o) { return check_lines(i.mesh, a, *i.image, o); }},
       {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }},
       {"topology", Needs::kPromisedImage, [](I i, A a, O) { return check_topology(i.mesh, a, *i.image); }}};
   return kAll;
@@ -158,7 +165,7 @@ std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options
                                     [&](const Claim& known) { return known.name == name; });
     if (!is_sound && name != "structure") {
       results.push_back(not_run(name, "the mesh is empty or has invalid vertex ids or coordinates"));
-    } else if ((claim->needs == Needs::kImage || claim->needs == Needs::kPromisedImage) && !inputs.image) {
+    } else if (needs_image(claim->needs) && !inputs.image) {
       results.push_back(not_run(name, "no image given (--image)"));
     } else {
       results.push_back(claim->check(inputs, adjacency, options));

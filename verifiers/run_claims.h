@@ -22,6 +22,7 @@ enum class Needs {
   kBound,
   kDihedralBound,
   kPromisedImage,  ///< an image, and a file that promises the claim, or a request by name
+  kLines,          ///< an image, and the distance at which the mesh samples lines
 };
 
 /// Throws InputError if an unknown claim is asked for.

@@ -36,6 +36,8 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
                           const Options& options);
 ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                                    const Options& options);
+ClaimResult check_lines(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
+                        const Options& options);
 ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                            const Options& options);
 /// Not on ranks.

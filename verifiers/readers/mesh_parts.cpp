@@ -83,6 +83,12 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
       mesh.promised_dihedral_deg = bounds;
       return;
     }
+  } else if (const auto delta = after_prefix(words, "lines ")) {
+    const auto mm = numbers_of<1>(*delta);
+    if (mm && (*mm)[0] > 0 && std::isfinite((*mm)[0])) {
+      mesh.promised_lines_delta_mm = (*mm)[0];
+      return;
+    }
   } else if (const auto width = after_prefix(words, "smoothed ")) {
     const auto mm = numbers_of<1>(*width);
     if (mm && (*mm)[0] > 0 && std::isfinite((*mm)[0])) {

@@ -125,7 +125,7 @@ struct Head {
   std::map<LabelValue, std::array<std::uint8_t, 3>> label_colours;
   std::vector<std::string> unclaimed;
   std::optional<std::array<double, 2>> promised_dihedral_deg;
-  std::optional<double> smoothing_mm;
+  std::optional<double> smoothing_mm, promised_lines_delta_mm;
 
   Head() = default;
   Head(const Mesh& mesh, const std::string& format_of_first)
@@ -135,7 +135,8 @@ struct Head {
         label_colours(mesh.label_colours),
         unclaimed(mesh.unclaimed.begin(), mesh.unclaimed.end()),
         promised_dihedral_deg(mesh.promised_dihedral_deg),
-        smoothing_mm(mesh.smoothing_mm) {}
+        smoothing_mm(mesh.smoothing_mm),
+        promised_lines_delta_mm(mesh.promised_lines_delta_mm) {}
 
   Mesh mesh() const {
     Mesh mesh;
@@ -145,11 +146,13 @@ struct Head {
     mesh.unclaimed = {unclaimed.begin(), unclaimed.end()};
     mesh.promised_dihedral_deg = promised_dihedral_deg;
     mesh.smoothing_mm = smoothing_mm;
+    mesh.promised_lines_delta_mm = promised_lines_delta_mm;
     return mesh;
   }
   template <class Stream>
   void transfer(Stream& stream) {
-    stream(format, space, label_names, label_colours, unclaimed, promised_dihedral_deg, smoothing_mm);
+    stream(format, space, label_names, label_colours, unclaimed, promised_dihedral_deg, smoothing_mm,
+           promised_lines_delta_mm);
   }
 };
 

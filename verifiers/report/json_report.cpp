@@ -104,6 +104,7 @@ Json options_of(const Options& options) {
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
           {"vertex_bound_voxels", options.vertex_bound_voxels},
           {"delta_mm", options.delta_mm ? Json(*options.delta_mm) : Json(nullptr)},
+          {"lines_delta_mm", options.lines_delta_mm ? Json(*options.lines_delta_mm) : Json(nullptr)},
           {"threads", options.threads}};
 }
 
@@ -130,6 +131,8 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
   mesh_json["unclaimed"] = mesh.unclaimed;
   mesh_json["promised_dihedral_deg"] =
       mesh.promised_dihedral_deg ? Json(*mesh.promised_dihedral_deg) : Json(nullptr);
+  mesh_json["promised_lines_delta_mm"] =
+      mesh.promised_lines_delta_mm ? Json(*mesh.promised_lines_delta_mm) : Json(nullptr);
   mesh_json["smoothing_mm"] = mesh.smoothing_mm ? Json(*mesh.smoothing_mm) : Json(nullptr);
   const Json report{{"schema", "podm-verify/1"},
                     {"program", "podm-verify " PODM_VERSION},
