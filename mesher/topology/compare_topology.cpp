@@ -108,6 +108,14 @@ class Comparison {
       });
   }
 
+  // `matching` begins with the largest piece.
+  bool is_split_ambiguous(const ImageRegion& of_image, const std::vector<std::uint32_t>& matching) const {
+    const auto others = std::count_if(matching.begin() + 1, matching.end(), [&](std::uint32_t region) {
+      return !is_at_ambiguous_place(of_mesh_[region]);
+    });
+    return static_cast<std::uint64_t>(others) < of_image.num_joined;
+  }
+
   void compare(std::uint32_t region) {
     const ImageRegion& of_image = of_image_[region];
     const auto& matching = matching_[region];
@@ -115,7 +123,7 @@ class Comparison {
       const ImageRegion& other = of_image_[match_[reaching_[region].front()]];
       add(TopologyDifference::kJoined, other.group == of_image.group, region, reaching_[region]);
     } else if (matching.size() > 1) {
-      add(TopologyDifference::kSplit, matching.size() <= of_image.num_joined, region, matching);
+      add(TopologyDifference::kSplit, is_split_ambiguous(of_image, matching), region, matching);
     } else if (matching.size() == 1 && !has_absorbed(matching.front(), region)) {
       compare_numbers(region, matching.front());
     }

@@ -8,10 +8,11 @@
 //   several regions match handles, cavities   a region with another number of them than the only region that
 //   matches it
 // Regions of the image are those that follow the mesh at ambiguous places (image_regions.h). A difference
-// that these places can explain is *ambiguous*: two joined regions which such places would join; a region
-// split into no more pieces than those of it that faces join; numbers that differ by no more than there are
-// ambiguous places at the region; a spurious region of at most two voxels along each axis, with an ambiguous
-// place of its label within half a voxel of its bounds. It is counted, and no fault of the mesh.
+// that these places can explain is *ambiguous*: two joined regions which such places would join; numbers
+// that differ by no more than there are ambiguous places at the region; a spurious region at an ambiguous
+// place, which is one of at most two voxels along each axis, with an ambiguous place of its label within half
+// a voxel of its bounds; a region split into no more pieces than those of it that faces join, without pieces
+// at an ambiguous place but the largest. It is counted, and no fault of the mesh.
 #pragma once
 
 #include <vector>

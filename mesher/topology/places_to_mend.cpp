@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
+#include <map>
 
 #include "topology/labels_at_places.h"
 #include "topology/simple_voxel.h"
@@ -113,7 +113,7 @@ class Places {
   Places(const Mesh& mesh, const MeshRegions& of_mesh, const LabelImage& image, const ImageRegions& of_image)
       : mesh_(mesh), of_mesh_(of_mesh), image_(image), of_image_(of_image) {}
 
-  std::vector<std::size_t> operator()(const RegionDifference& difference) const {
+  std::vector<std::size_t> operator()(const RegionDifference& difference) {
     if (difference.kind == TopologyDifference::kLost) return voxels_of_part(difference);
     std::vector<std::size_t> found;
     const bool is_in_pieces =
@@ -122,7 +122,10 @@ class Places {
     for (std::size_t i = first; is_in_pieces && i < difference.mesh_regions.size(); ++i)
       append_box(difference.mesh_regions[i], found);
     if (!found.empty()) return found;
-    return where_voxels_differ(difference);
+    if (difference.image_region == kNoRegion) return where_voxels_differ(difference);
+    auto& known = of_region_[difference.image_region];  // a region may have several differences
+    if (known.empty()) known = where_voxels_differ(difference);
+    return known;
   }
 
  private:
@@ -192,6 +195,7 @@ class Places {
   const MeshRegions& of_mesh_;
   const LabelImage& image_;
   const ImageRegions& of_image_;
+  std::map<std::uint32_t, std::vector<std::size_t>> of_region_;  // of the image: where voxels differ
 };
 
 }  // namespace
@@ -199,7 +203,7 @@ class Places {
 std::vector<PlacesToMend> places_to_mend(const std::vector<RegionDifference>& differences, const Mesh& mesh,
                                          const MeshRegions& of_mesh, const LabelImage& image,
                                          const ImageRegions& of_image) {
-  const Places places(mesh, of_mesh, image, of_image);
+  Places places(mesh, of_mesh, image, of_image);
   std::vector<PlacesToMend> found;
   for (std::size_t i = 0; i < differences.size(); ++i)
     if (!differences[i].is_ambiguous) found.push_back({i, places(differences[i])});

@@ -6,21 +6,20 @@
 //               join cells, and the image follows the mesh at places that are ambiguous, as the 6-connected
 //               and the 26-connected readings of the image differ there. A component of the mesh belongs to
 //               the component of the image with its label that most of its cells' centroids are in.
-//   Exceptions  A difference that ambiguous places explain is counted, not judged: components that such
-//   places
-//               would join; one in no more pieces than it has parts that faces join; numbers of handles and
-//               cavities that differ by no more than there are ambiguous places at the component; one that is
-//               only in the mesh, at most two voxels long along each axis, with an ambiguous place of its
-//               label within half a voxel of its bounds. A difference that the file lists ("promise differs
-//               split 3 10 20 30": kind, label, voxel) is counted, too, if a difference of this kind and
-//               label has its voxel within two voxels of the component's bounds. Each listed one excuses one.
-//   Rests on    The numbering and signs of adjacency.h. Cells that overlap, or facets of three cells, make
-//   the
+//   Exceptions  A difference that ambiguous places explain is counted, not judged. A piece of the mesh is at
+//               an ambiguous place if it is at most two voxels long along each axis, with such a place of its
+//               label within half a voxel of its bounds. They explain components that they would join; pieces
+//               at them, which are only in the mesh or beside the largest piece of a component; others, up to
+//               the number of its parts that faces join; and numbers of handles and cavities that differ by
+//               no more than there are ambiguous places at the component. A difference that the file lists
+//               ("promise differs split 3 10 20 30": kind, label, voxel) is counted, too, if a difference of
+//               this kind and label has the voxel within two voxels of the component's bounds. Each one that
+//               is listed excuses one.
+//   Rests on    The numbering and signs of adjacency.h. Overlapping cells, or facets of three cells, make the
 //               numbers meaningless: structure rejects such meshes.
-//   Cost        Linear in voxels and cells, and for each label in the contacts between components; 24 bytes
-//               per voxel, about 50 per cell.
-//   Not proved  That components are where the image has them: fidelity is about that. Whether a component
-//   with
+//   Cost        Linear in voxels and cells, and for each label in the contacts between components. It takes
+//               30 bytes per voxel, about 50 per cell.
+//   Not proved  That components are where the image has them: fidelity is about that. That a component with
 //               many ambiguous places has the right numbers. The background's own components, unless a single
 //               label encloses them.
 #include <fmt/format.h>
@@ -125,6 +124,17 @@ class Matching {
       if (match_[m] != kNone) matching_[match_[m]].push_back(m);
   }
 
+  bool is_split_ambiguous(std::uint32_t r) const {
+    const auto& pieces = matching_[r];
+    const std::uint32_t largest =
+        *std::max_element(pieces.begin(), pieces.end(), [&](std::uint32_t a, std::uint32_t b) {
+          return of_mesh_.regions[a].size < of_mesh_.regions[b].size;
+        });
+    std::uint64_t others = 0;
+    for (const std::uint32_t m : pieces) others += m != largest && !is_at_ambiguous_place(m);
+    return others < of_image_.facts[r].parts;
+  }
+
   // True for a small region of the mesh with an ambiguous place of its label near its bounds.
   bool is_at_ambiguous_place(std::uint32_t m) const {
     constexpr double kMostVoxels = 2, kNearVoxels = 0.5, kFar = 1e300;
@@ -159,7 +169,7 @@ class Matching {
       const bool is_ambiguous = of_image_.facts[match_[meeting_[r].front()]].group == facts.group;
       found_.push_back({"joined", region.label, r, meeting_[r], is_ambiguous, 1, 0});
     } else if (matching.size() > 1) {
-      found_.push_back({"split", region.label, r, matching, matching.size() <= facts.parts, 1,
+      found_.push_back({"split", region.label, r, matching, is_split_ambiguous(r), 1,
                         static_cast<double>(matching.size())});
     } else if (matching.size() == 1 && has_more[matching[0]] == 0) {
       compare_numbers(r, matching[0]);

@@ -148,6 +148,17 @@ def more_than_ambiguous_places_explain(fixture):
 
 
 @operator("topology")
+def large_piece_at_an_ambiguous_place(fixture):
+    """a component split into large pieces at an ambiguous place; harmless: a voxel that is split off there"""
+    image = np.zeros((6, 7, 12), dtype=int)
+    image[1:4, 1:6, 1:11] = 1
+    image[4, 1, 1] = image[4, 2, 2] = 1
+    wall = {(6, y, z): 0 for y in range(1, 6) for z in range(1, 4)}
+    below = {(x, y, 3): 0 for x in (1,) for y in (1,)}
+    return pair(fixture, image, wall, below)
+
+
+@operator("topology")
 def listed_with_another_kind(fixture):
     """a bridge cut that the file lists as a lost component; harmless: it lists the split"""
     image = two_blocks()
