@@ -8,8 +8,8 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
-             "--target-elements", "--target-tolerance", "--target-meshes", "--smooth", "--min-dihedral", "--labels",
+    "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta", "--thin",
+             "--delta-least", "--target-elements", "--target-tolerance", "--target-meshes", "--smooth", "--min-dihedral", "--labels",
              "--drop-islands", "--merge", "--drop", "--layers", "--background", "--label-names", "--space", "--surface",
              "--record",
              "--max-elements", "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm",
@@ -22,7 +22,7 @@ OPTIONS = {
     "replay": ["--labels", "--merge", "--drop", "--layers", "--background", "--label-names", "--drop-islands"],
     "info": ["--labels", "--merge", "--drop", "--layers", "--background", "--label-names", "--drop-islands", "--json",
              "--output", "--plan", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
-             "--target-elements", "--target-tolerance", "--smooth", "--min-dihedral", "--optimize",
+             "--thin", "--delta-least", "--target-elements", "--target-tolerance", "--smooth", "--min-dihedral", "--optimize",
              "--dihedral-bounds", "--algorithm", "--threads", "--oversubscribe"],
     "phantom": ["--size", "--output", "--label-names"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",

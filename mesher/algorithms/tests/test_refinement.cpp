@@ -26,6 +26,7 @@ struct Scene {
   NamedImage image;
   double smoothing_mm = 0;
   bool has_size_grid = false;
+  bool has_deltas = false;  // by place
   friend std::ostream& operator<<(std::ostream& out, const Scene& x) { return out << x.image; }
 };
 
@@ -35,7 +36,7 @@ std::vector<Scene> plain_scenes() {
   return scenes;
 }
 
-// Voxels ten times as long as wide, smoothed interfaces, sizes by place, and all of these.
+// Voxels ten times as long as wide, smoothed interfaces, sizes by place, deltas by place, and all of these.
 std::vector<Scene> special_scenes() {
   const auto ball_of = [](std::array<int, 3> size, std::array<double, 3> spacing) {
     return make_image(size, spacing, 2, [=](int i, int j, int k) {
@@ -47,10 +48,19 @@ std::vector<Scene> special_scenes() {
   };
   const auto cubes = [=] { return ball_of({24, 24, 24}, {1, 1, 1}); };
   const auto long_voxels = [=] { return ball_of({42, 42, 6}, {0.5, 0.5, 5}); };
-  return {{.image = {"long_voxels", long_voxels}},
-          {.image = {"smoothed", cubes}, .smoothing_mm = 1.5},
-          {.image = {"sizes_by_place", cubes}, .has_size_grid = true},
-          {.image = {"all_three", long_voxels}, .smoothing_mm = 1.5, .has_size_grid = true}};
+  return {
+      {.image = {"long_voxels", long_voxels}},
+      {.image = {"smoothed", cubes}, .smoothing_mm = 1.5},
+      {.image = {"sizes_by_place", cubes}, .has_size_grid = true},
+      {.image = {"deltas_by_place", cubes}, .has_deltas = true},
+      {.image = {"all_four", long_voxels}, .smoothing_mm = 1.5, .has_size_grid = true, .has_deltas = true}};
+}
+
+// Deltas that are as small as a quarter in the middle of the image.
+std::shared_ptr<const DeltaField> small_deltas(const LabelImage& image, double delta_mm) {
+  DeltasAtVoxels deltas(image, delta_mm / 4, delta_mm);
+  deltas.lower(image.index(image.size[0] / 2, image.size[1] / 2, image.size[2] / 2), 0);
+  return deltas.graded();
 }
 
 // Sizes that shrink along x, from kRadius at one end of the image to a half of it at the other.
@@ -124,23 +134,27 @@ class Refined : public testing::TestWithParam<std::tuple<Scene, Method>> {
         .delta_mm = delta_,
         .sizes = sizes_,
         .cell_capacity = 1 << 22,
-        .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(12, 160)) : std::nullopt};
+        .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(12, 160)) : std::nullopt,
+        .deltas = deltas_};
     return method(problem, stop);
   }
   double spacing() const {
-    return std::min(delta_, std::sqrt(sizes_.smallest_squared_radius() / (2 + std::sqrt(3.0))));
+    const double least = deltas_ != nullptr ? deltas_->least_mm() : delta_;
+    return std::min(least, std::sqrt(sizes_.smallest_squared_radius() / (2 + std::sqrt(3.0))));
   }
   Parameters parameters() const {
     return {.delta_mm = delta_,
             .sizes = sizes_,
             .clamp_box = clamp_box(foreground_bounds(image_), delta_),
-            .spacing_mm = spacing()};
+            .spacing_mm = spacing(),
+            .deltas = deltas_};
   }
 
   const Scene scene_ = std::get<Scene>(GetParam());
   LabelImage image_ = scene_.image.make();
   Isosurface isosurface_{image_, 1, weights_of(image_, scene_.smoothing_mm, 1)};
   double delta_ = default_delta_mm(image_, kRadius);
+  std::shared_ptr<const DeltaField> deltas_ = scene_.has_deltas ? small_deltas(image_, delta_) : nullptr;
   SizeField sizes_{std::vector<double>(image_.labels.size(), kRadius),
                    scene_.has_size_grid ? shrinking_sizes(image_) : nullptr};
   Refinement refinement_;
