@@ -17,6 +17,7 @@ namespace podm {
 namespace {
 
 constexpr int kMostRounds = 16;
+constexpr double kLeastSegment = 1e-3;  // voxels
 
 void unite(std::vector<LabelIndex>& labels, const std::vector<LabelIndex>& others) {
   std::vector<LabelIndex> all;
@@ -87,6 +88,7 @@ class Simplifier {
       if (!has_changed) break;
     }
     remove_short_closed_arcs();
+    for (GraphArc& arc : arcs_) remove_repeated(arc.points, kLeastSegment);
     return std::move(removed_);
   }
 

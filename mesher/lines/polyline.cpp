@@ -84,6 +84,16 @@ void remove_reversals(std::vector<Point>& points) {
   points.resize(kept);
 }
 
+void remove_repeated(std::vector<Point>& points, double distance) {
+  const auto is_near = [&](const Point& p, const Point& q) { return podm::distance(p, q) < distance; };
+  std::size_t kept = 1;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    if (!is_near(points[i], points[kept - 1]) && !is_near(points[i], points.back()))
+      points[kept++] = points[i];
+  points[kept++] = points.back();
+  points.resize(kept);
+}
+
 void simplify(std::vector<Point>& points, double tolerance) {
   if (points.size() < 3) return;
   std::vector<bool> is_needed(points.size());

@@ -33,6 +33,8 @@ bool are_within(Polyline a, Polyline b, double distance);
 
 /// Removes points between which a polyline turns back, by more than a right angle.
 void remove_reversals(std::vector<Point>& points);
+/// Removes points between the ends that are closer than `distance` to the point before them, or to the end.
+void remove_repeated(std::vector<Point>& points, double distance);
 /// Keeps the points that a polyline needs so that none of the removed ones is farther than `tolerance` from
 /// it (Douglas, Peucker). A closed polyline keeps at least three different points.
 void simplify(std::vector<Point>& points, double tolerance);

@@ -77,7 +77,8 @@ TEST(TraceLines, ArcsEndAtTheirNodesAndClosedArcsClose) {
     for (const LineArc& arc : t.network.arcs) {
       ASSERT_GE(arc.points.size(), 2u);
       EXPECT_TRUE(std::is_sorted(arc.labels.begin(), arc.labels.end()));
-      EXPECT_GT(Arc(arc).length(), 0);
+      for (std::size_t i = 0; i + 1 < arc.points.size(); ++i)
+        EXPECT_GT(distance(arc.points[i], arc.points[i + 1]), 5e-4);
       if (arc.is_closed()) {
         EXPECT_EQ(arc.last_node, -1);
         EXPECT_EQ(arc.points.front(), arc.points.back());
