@@ -42,9 +42,9 @@ TEST(MemoryOfLines, EstimateExceedsTheMemoryThatIsTaken) {
   Random random(11);
   std::vector<LabelImage> images;
   for (const unsigned num_labels : {3u, 5u, 60u})
-    images.push_back(random_image(random, {18, 18, 18}, {1, 1, 1}, num_labels, 0.2));
-  images.push_back(random_image(random, {40, 40, 30}, {1, 1, 1}, 5, 0.8));
-  images.push_back(polycrystal(random, {60, 60, 50}, {1, 1, 1}, 80, false));
+    images.push_back(random_image(random, {12, 12, 12}, {1, 1, 1}, num_labels, 0.2));
+  images.push_back(random_image(random, {24, 24, 20}, {1, 1, 1}, 5, 0.8));
+  images.push_back(polycrystal(random, {40, 40, 40}, {1, 1, 1}, 40, false));
   for (const LabelImage& image : images)
     for (const bool is_box_flat : {false, true})
       for (const bool has_lines : {false, true}) {
