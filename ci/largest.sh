@@ -1,9 +1,10 @@
 #!/bin/sh
 # Usage: ci/largest.sh [FOLDER]
 # Builds the programs in build/. Makes a mesh of a phantom on LARGEST_RANKS (8) ranks in one process, with its pieces
-# and logs in a new folder in FOLDER (build). LARGEST_RADIUS (0.72 mm) gives about 160 million cells. podm-verify-mpi
-# must prove all claims but fidelity from the pieces, and podm-mpi replay must make the mesh again from the logs. Prints
-# the seconds and the memory of each step. If a step fails, the exit code is 1 and the folder stays.
+# and logs in a new folder in FOLDER (build). LARGEST_RADIUS (0.72 mm) gives about 160 million cells. The ranks may take
+# LARGEST_GIB in all (80 % of the available memory). podm-verify-mpi must prove all claims but fidelity from the pieces,
+# and podm-mpi replay must make the mesh again from the logs. Prints the seconds and the memory of each step. If a step
+# fails, the exit code is 1 and the folder stays.
 set -eu
 cd "$(dirname "$0")/.."
 ranks=${LARGEST_RANKS:-8}
@@ -23,7 +24,7 @@ step() {
 }
 
 step build/bin/podm-mpi mesh "$image" --radius "$radius" --in-process "$ranks" \
-  --log "$folder/run.log" -o "$folder/mesh.pvtu"
+  ${LARGEST_GIB:+--max-memory-gib "$LARGEST_GIB"} --log "$folder/run.log" -o "$folder/mesh.pvtu"
 du -sh "$folder"
 step build/bin/podm-verify-mpi "$folder/mesh.pvtu" --image "$image" --in-process "$ranks" \
   --radius "$radius" \

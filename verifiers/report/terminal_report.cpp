@@ -21,9 +21,21 @@ std::string witness_text(const Witness& witness) {
 
 const char* why_left_out(const Claim& claim, const Mesh& mesh) {
   if (mesh.unclaimed.contains(claim.name)) return "the file does not claim it";
-  constexpr std::array kWords{"needs nothing", "needs --image", "needs --radius",
-                              "needs --min-dihedral or --max-dihedral"};
-  return kWords[static_cast<std::size_t>(claim.needs)];
+  switch (claim.needs) {
+    case Needs::kNothing:
+      return "needs nothing";
+    case Needs::kImage:
+      return "needs --image";
+    case Needs::kBound:
+      return "needs --radius";
+    case Needs::kDihedralBound:
+      return "needs --min-dihedral or --max-dihedral";
+    case Needs::kPromisedImage:
+      return "needs --image, and a file that promises it";
+    case Needs::kLines:
+      return "needs --image and --lines-delta";
+  }
+  return "";
 }
 
 std::string left_out(const Mesh& mesh, const Options& options, const std::vector<ClaimResult>& results) {
