@@ -66,7 +66,9 @@ class ProgramTest(unittest.TestCase):
         process = self.verify("--json", self.report)
         self.assert_exit(process, 0)
         self.assertIn("left out: size (needs --radius), dihedral (needs --min-dihedral or --max-dihedral), "
-                      "labels (needs --image), surface_vertices (needs --image), fidelity (needs --image)",
+                      "labels (needs --image), surface_vertices (needs --image), "
+                      "lines (needs --image and --lines-delta), fidelity (needs --image), "
+                      "topology (needs --image, and a file that promises it)",
                       process.stdout)
         claims = self.read_report()["claims"]
         self.assertEqual({claim["verdict"] for claim in claims.values()}, {"pass"})
