@@ -15,6 +15,11 @@ constexpr double square(double x) { return x * x; }
 constexpr double kNearestTrust = 0.9;
 constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
+Point clamped(const Point& p, const Box& box) {
+  return {std::clamp(p.x, box.low.x, box.high.x), std::clamp(p.y, box.low.y, box.high.y),
+          std::clamp(p.z, box.low.z, box.high.z)};
+}
+
 }  // namespace
 
 template <class Cells>
@@ -55,24 +60,34 @@ double RulesOn<Cells>::distance_lower_bound(const Point& p, double radius) const
 }
 
 template <class Cells>
-double RulesOn<Cells>::squared_delta_at_either(const Point& p, const Point& q) const {
-  return square(std::min(delta_at(p), delta_at(q)));
+double RulesOn<Cells>::squared_delta_at(const Point& p) const {
+  return square(parameters_.deltas->at(p));
 }
 
 template <class Cells>
-double RulesOn<Cells>::least_delta_in_ball(const Point& center, double radius) const {
-  return parameters_.deltas->least_within(radius, delta_at(center));
+double RulesOn<Cells>::squared_delta_at_either(const Point& p, const Point& q) const {
+  return std::min(squared_delta_at(p), squared_delta_at(q));
+}
+
+template <class Cells>
+double RulesOn<Cells>::least_squared_delta(const Point& center, double radius) const {
+  const DeltaField& deltas = *parameters_.deltas;
+  return square(deltas.least_within(radius, deltas.at(center)));
+}
+
+template <class Cells>
+bool RulesOn<Cells>::is_covered_by_any(const Cell& cell, const Point& z) const {
+  return std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                     [&](VertexId v) { return is_covered(z, v); });
 }
 
 // If r < delta/2, an isosurface vertex of the cell is within 2r < delta of z. R1 then does not apply, nor
 // does R2.
 template <class Cells>
-bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
-  return 4 * squared_radius < squared_delta_ &&
+bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius, double squared_delta) const {
+  return 4 * squared_radius < squared_delta &&
          std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; }) &&
-         (!has_deltas_ ||
-          4 * squared_radius < square(least_delta_in_ball(cell.center, std::sqrt(squared_radius))));
+                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
 }
 
 template <class Cells>
@@ -88,11 +103,13 @@ Examination RulesOn<Cells>::examine(CellId c) const {
   t.squared_radius = squared_radius;
   t.label = label;
   t.isosurface_distance = bound;
-  if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
-  const Cover cover =
-      covered_by(cell, has_deltas_ ? square(least_delta_in_ball(center, radius)) : squared_delta_);
+  if (t.isosurface_distance > radius) return t;
+  const double squared_delta = has_deltas_ ? least_squared_delta(center, radius) : squared_delta_;
+  if (obeys_r1_and_r2(cell, squared_radius, squared_delta)) return t;
+  const Cover cover = covered_by(cell, squared_delta);
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });
-  t.is_covered = t.nearest && is_covered_by(cell, cover, t.nearest->point);
+  t.is_covered = t.nearest && (cover.contains(t.nearest->point) ||
+                               (has_deltas_ && is_covered_by_any(cell, t.nearest->point)));
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
@@ -100,9 +117,9 @@ Examination RulesOn<Cells>::examine(CellId c) const {
 
 // The balls around the cell's own isosurface vertices.
 template <class Cells>
-Cover RulesOn<Cells>::covered_by(const Cell& cell, double squared_radius) const {
+Cover RulesOn<Cells>::covered_by(const Cell& cell, double squared_delta) const {
   Cover cover;
-  cover.squared_radius = squared_radius;
+  cover.squared_radius = squared_delta;
   for (const VertexId v : cell.vertices) {
     if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = &mesh_.point(v);
   }
@@ -110,17 +127,10 @@ Cover RulesOn<Cells>::covered_by(const Cell& cell, double squared_radius) const 
 }
 
 template <class Cells>
-bool RulesOn<Cells>::is_covered_by(const Cell& cell, const Cover& cover, const Point& z) const {
-  if (cover.contains(z)) return true;
-  return has_deltas_ && std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                                    [&](VertexId v) { return is_covered(z, v); });
-}
-
-template <class Cells>
 bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
   if (mesh_.vertex(by).kind != VertexKind::kIsosurface) return false;
   const double squared = squared_distance(mesh_.point(by), z);
-  return squared < squared_delta_ && (!has_deltas_ || squared < square(delta_at(z)));
+  return squared < squared_delta_ && (!has_deltas_ || squared < squared_delta_at(z));
 }
 
 template <class Cells>
@@ -151,12 +161,14 @@ bool RulesOn<Cells>::is_covered_beside(CellId c, const Point& z) const {
 template <class Cells>
 std::optional<Point> RulesOn<Cells>::r2_center(const Examination& t) const {
   if (!t.nearest) return std::nullopt;
-  if (t.squared_radius < squared_two_delta_ &&
-      (!has_deltas_ || t.squared_radius < 4 * squared_delta_at_either(t.center, t.nearest->point)))
-    return std::nullopt;
-  const Box& box = parameters_.clamp_box;
-  return Point{std::clamp(t.center.x, box.low.x, box.high.x), std::clamp(t.center.y, box.low.y, box.high.y),
-               std::clamp(t.center.z, box.low.z, box.high.z)};
+  if (t.squared_radius >= squared_two_delta_) return clamped(t.center, parameters_.clamp_box);
+  return has_deltas_ ? r2_center_by_place(t) : std::nullopt;
+}
+
+template <class Cells>
+std::optional<Point> RulesOn<Cells>::r2_center_by_place(const Examination& t) const {
+  if (t.squared_radius < 4 * squared_delta_at_either(t.center, t.nearest->point)) return std::nullopt;
+  return clamped(t.center, parameters_.clamp_box);
 }
 
 // Returns true if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as

@@ -169,18 +169,20 @@ class RulesOn {
   LabelIndex look_up_label(CellId c) const;
   LabelAndBound label_and_bound(CellId c, double radius) const;
   double distance_lower_bound(const Point& p, double radius) const;
-  Cover covered_by(const Cell& cell, double squared_radius) const;
-  bool is_covered_by(const Cell& cell, const Cover& cover, const Point& z) const;
+  Cover covered_by(const Cell& cell, double squared_delta) const;
   bool is_covered_beside(CellId c, const Point& z) const;
   FacetMask facets_tested_before(CellId c) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_restricted(const Examination& t, CellId neighbor) const;
   std::optional<SurfaceCenter> surface_center(const Examination& t, CellId neighbor) const;
-  bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
-  // These three need deltas by place.
-  double delta_at(const Point& p) const { return parameters_.deltas->at(p); }
-  double squared_delta_at_either(const Point& p, const Point& q) const;
-  double least_delta_in_ball(const Point& center, double radius) const;
+  bool obeys_r1_and_r2(const Cell& cell, double squared_radius, double squared_delta) const;
+  // Only deltas by place need these functions. They are not inlined, so that runs with one delta pay no more
+  // than branches.
+  [[gnu::noinline]] double squared_delta_at(const Point& p) const;
+  [[gnu::noinline]] double squared_delta_at_either(const Point& p, const Point& q) const;
+  [[gnu::noinline]] double least_squared_delta(const Point& center, double radius) const;
+  [[gnu::noinline]] bool is_covered_by_any(const Cell& cell, const Point& z) const;
+  [[gnu::noinline]] std::optional<Point> r2_center_by_place(const Examination& t) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
 
