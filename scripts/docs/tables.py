@@ -2,7 +2,7 @@
 arguments and returns lines of Markdown. To add a table, add a function and a line in TABLES."""
 import pandas
 
-from figures import distributed, experiment_verdicts
+from figures import distributed, distributed_model, experiment_verdicts
 from figures import paper_claims as papers
 from figures import peers as other_meshers
 from figures import scaling
@@ -135,6 +135,12 @@ def ranks(sources, folder):
         "seeds and vertices learnt per vertex": [f"{value:.2f}" for value in table["learnt_per_vertex"]]}))
 
 
+def nodes(sources, folder):
+    """Weak efficiency at 20 million cells per node, extrapolated from simulated ranks, and the parts of the time."""
+    lines = distributed_model.extrapolated(distributed.distributed(sources.frame((folder,))))
+    return _lines(distributed_model.readable(lines))
+
+
 def simulated_speedups(sources, folder):
     """Speed-ups over PODM on one core by algorithm and cells per core, beside the paper's."""
     return _lines(speedups(scaling.weak_series(sources.frame((folder,)))))
@@ -172,11 +178,11 @@ def paper_claims(sources, *names):
 
 
 TABLES = {table.__name__: table
-          for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks,
+          for table in (costs, gate, gate_tries, machines, nodes, paper_claims, peers, peers_in_full, ranks,
                         sharing, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine. Their rows must come from a known machine.
-TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
-         "slivers": Expression("phases_s")}
+TIMED = {"costs": Expression("process"), "nodes": Expression("phases_s"), "peers": Expression("phases_s"),
+         "peers_in_full": Expression("phases_s"), "slivers": Expression("phases_s")}
 
 
 def generate(name, arguments, sources, provenance):
