@@ -176,10 +176,9 @@ void declare_claims(CLI::App& app, TypedCommand& command) {
              "[default: none]")
       ->check(positive());
   add_option(app, "--lines-delta", "MM", options.lines_delta_mm,
-             "lines: distance at which a mesh of podm mesh --lines samples lines\n"
-             "[default: as the file promises]")
-      ->check(positive())
-      ->needs(image);
+             "distance at which a mesh of podm mesh --lines samples lines; boundary_angles then has a\n"
+             "weaker bound near lines [default: as the file promises]")
+      ->check(positive());
 }
 
 void declare_report(CLI::App& app, TypedCommand& command, Program program) {

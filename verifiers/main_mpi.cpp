@@ -30,8 +30,10 @@ int verify_part(Command command, Communication& ranks, int ranks_on_machine) {
   const std::string& path = command.options.mesh_path;
   do_on_all(ranks, [&] {
     const auto& claims = command.options.claims;
-    if (std::find(claims.begin(), claims.end(), "topology") != claims.end())
-      throw InputError("--claims topology: not on ranks, as it needs the whole mesh; podm-verify checks it");
+    for (const char* claim : {"lines", "topology"})
+      if (std::find(claims.begin(), claims.end(), claim) != claims.end())
+        throw InputError(fmt::format(
+            "--claims {}: not on ranks, as it needs the whole mesh; podm-verify checks it", claim));
     if (!path.ends_with(".pvtu") && !path.ends_with(".pvtu.gz"))
       throw InputError(path + ": not a mesh in pieces (.pvtu); podm-verify reads the other formats");
   });

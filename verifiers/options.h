@@ -36,7 +36,8 @@ struct Options {
   /// The sampling distance of a PODM mesh's surfaces. Distances up to 2 delta are accepted, too
   /// (check_fidelity.cpp, check_labels.cpp, check_surface_vertices.cpp).
   std::optional<double> delta_mm;
-  /// The distance at which the mesh samples lines; overrides the one that the mesh file promises.
+  /// The distance at which the mesh samples lines; overrides the one that the mesh file promises. With
+  /// either, a weaker bound holds near lines (check_boundary_angles.cpp).
   std::optional<double> lines_delta_mm;
   std::optional<Space> space;               ///< overrides the space that the file states
   int threads = 0;                          ///< 0: all cores

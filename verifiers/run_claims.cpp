@@ -24,7 +24,8 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
     case Needs::kImage:
       return !options.image_path.empty();
     case Needs::kLines:
-      return !options.image_path.empty() && (options.lines_delta_mm || mesh.promised_lines_delta_mm);
+      return !options.image_path.empty() && (options.lines_delta_mm || mesh.promised_lines_delta_mm) &&
+             mesh.part == nullptr;
     case Needs::kBound:
       return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty() ||
              !options.interface_sizes.empty();
@@ -97,7 +98,7 @@ const std::vector<Claim>& all_claims() {
   using O = const Options&;
   static const std::vector<Claim> kAll{
       {"structure", Needs::kNothing, [](I i, A a, O o) { return check_structure(i.mesh, a, o); }},
-      {"radius_edge", Needs::kNothing, [](I i, A, O o) { return check_radius_edge(i.mesh, o); }},
+      {"radius_edge", Needs::kNothing, [](I i, A a, O o) { return check_radius_edge(i.mesh, a, o); }},
       {"boundary_angles", Needs::kNothing, [](I i, A a, O o) { return check_boundary_angles(i.mesh, a, o); }},
       {"size", Needs::kBound,
        [](I i, A, O o) { return check_size(i.mesh, pointer(i.image), pointer(i.sizes), o); }},

@@ -22,7 +22,7 @@ enum class Needs {
   kBound,
   kDihedralBound,
   kPromisedImage,  ///< an image, and a file that promises the claim, or a request by name
-  kLines,          ///< an image, and the distance at which the mesh samples lines
+  kLines,          ///< an image, and the distance at which the mesh samples lines; not on ranks
 };
 
 /// Throws InputError if an unknown claim is asked for.

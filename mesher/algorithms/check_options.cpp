@@ -72,6 +72,19 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   check_thin(sizes);
 }
 
+void check_lines(const MeshingOptions& options) {
+  const LinesOptions& lines = options.lines;
+  if (!lines.are_kept && lines.delta_mm > 0)
+    throw InputError(fmt::format("{} needs {}", spelled("lines-delta"), spelled("lines")));
+  if (lines.are_kept && options.sizes.thin == Thin::kKeep)
+    throw InputError(
+        fmt::format("{0} excludes {1} keep: edges of lines may change the topology that {1} keep compares",
+                    spelled("lines"), spelled("thin")));
+  if (lines.are_kept && options.optimize.is_wanted)
+    throw InputError(fmt::format("{} excludes {}: optimisation may remove edges of lines", spelled("lines"),
+                                 spelled("optimize")));
+}
+
 void check_crossover(const MeshingOptions& options) {
   const Algorithm algorithm = options.algorithm;
   if (options.crossover > 0 && algorithm != Algorithm::kPdrPodm && algorithm != Algorithm::kAuto)
@@ -133,6 +146,7 @@ void check_options_but_voxels(const LabelImage& image, const MeshingOptions& opt
   check_affine(image);
   check_sizes(image, options.sizes);
   check_ranges(options);
+  check_lines(options);
   check_team_size(options.team, options.algorithm);
   check_crossover(options);
   check_optimization(options);

@@ -44,6 +44,8 @@ struct Problem {
   std::optional<DihedralBounds> dihedral_bounds = {};  // for R7; none: R7 is not requested
   std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta_mm everywhere
   const ThinLayers* thin = nullptr;                    // that these deltas keep; null: none is kept
+  const Lines* lines = nullptr;                        // to keep as edges; null: none
+  double lines_delta_mm = 0;                           // distance at which they are sampled
   /// Receives R7's progress, from 0 to 1, and the number of cells in the store.
   std::function<void(double fraction, std::uint64_t cells)> observe_perturbation = {};
 };
@@ -88,6 +90,7 @@ struct Refinement {
   PageSamples pages;
   std::optional<PerturbationReport> perturbation;
   std::optional<TopologyReport> topology;  // set if thin layers are kept
+  std::unique_ptr<LineEdges> line_edges;   // null: no lines are kept
 };
 
 /// The phase that prepares store, pools, workers and threads.
@@ -112,6 +115,9 @@ class Construction {
   int num_workers() const { return team_.coordination.num_workers; }
   /// Every cell of the store.
   Entries all_cells() const;
+  /// The edges of the lines, null until keep_lines().
+  LineEdges* line_edges() { return result_.line_edges.get(); }
+  void keep_lines(std::unique_ptr<LineEdges> edges) { result_.line_edges = std::move(edges); }
   /// The order of the commits in the team's log; null: there is no log.
   CommitOrder* commit_order() { return order_.get(); }
 
@@ -183,6 +189,7 @@ class Construction {
     });
     for (WorkerId self = 0; self < has_moved.size(); ++self)  // only starting workers allocates
       if (has_moved[self] == 0) relocation->move(self, *pools_[self]);
+    if (line_edges() != nullptr) line_edges()->rename([&](VertexId v) { return relocation->vertex_now(v); });
     if (order_ != nullptr) log(*relocation);
     return relocation;
   }

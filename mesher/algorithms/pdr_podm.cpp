@@ -6,6 +6,7 @@
 #include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
+#include "algorithms/sample_lines.h"
 
 namespace podm {
 
@@ -40,6 +41,8 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
   construction.reduce_capacity(bytes_of_leaves);
+  sample_lines(construction, levels.final);
+  levels.initial.lines = levels.final.lines;
   refine_anywhere(construction, "initial", levels.initial, construction.all_cells(),
                   team.initial_workers);  // 4
   if (stop.is_over()) return ended_early(construction);
@@ -53,6 +56,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());
   mend_topology(construction, levels.final);
+  mend_lines(construction, levels.final);
   perturb_mesh(construction, levels.final);
   return construction.finish();  // 30
 }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "algorithms/perturb_loop.h"
+#include "algorithms/sample_lines.h"
 
 namespace podm {
 
@@ -123,6 +124,7 @@ void perturb_mesh(Construction& construction, const Parameters& parameters) {
     }
   });
   construction.sample_pages(kPerturb);
+  mend_lines(construction, parameters);  // a move may take an edge at the floor out of the mesh
 }
 
 }  // namespace podm

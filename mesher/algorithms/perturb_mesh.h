@@ -6,7 +6,8 @@
 namespace podm {
 
 /// Moves vertices of cells with dihedral angles out of the problem's bounds, if it has bounds, with all
-/// workers of the team. Charges the phase "perturb". `parameters` are those of the refinement.
+/// workers of the team, and then mends lines again. Charges the phase "perturb". `parameters` are those of
+/// the refinement.
 void perturb_mesh(Construction& construction, const Parameters& parameters);
 
 }  // namespace podm

@@ -68,7 +68,12 @@ enum class VertexKind : std::uint8_t {
   kBox,           // corner of the virtual box, never removed
   kIsosurface,    // placed on the isosurface by R1 or R3, never removed
   kCircumcenter,  // placed at a circumcenter by R2, R4 or R5; R6 may remove it ("free")
+  kPinned,        // placed on a line that the mesh has lost there, otherwise as kIsosurface; never moved
+  kLine = 0x80,   // placed on a line where three or more labels meet, never removed or moved
 };
+/// True for vertices on the isosurface, those on lines among them. These kinds are even, and the other kinds
+/// that living cells have are odd.
+constexpr bool is_on_isosurface(VertexKind kind) { return (static_cast<unsigned>(kind) & 1) == 0; }
 
 struct Vertex {
   Point point;
@@ -197,6 +202,10 @@ class Mesh {
     assert_may_read(*this, c);
     put(c, static_cast<std::uint16_t>(facets << kFirstPassing), true);
   }
+  /// Empties facets_passing_r3(), while no worker runs.
+  void forget_facets_passing_r3(CellId c) {
+    put(c, static_cast<std::uint16_t>(kAllFacets << kFirstPassing), false);
+  }
   /// Puts a new cell in the slot c, or none (vertices kNoVertex). The caller sets its sphere and mirrors.
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
     Cell& cell = cells_[c];
@@ -250,7 +259,7 @@ class Mesh {
     for (const VertexId v : peek_vertices(c))
       if (v != kNoVertex) prefetch_vertex(v);
   }
-  void prefetch_neighbors(CellId c) const {
+  [[gnu::always_inline]] void prefetch_neighbors(CellId c) const {
     for (const FacetId mirror : peek_mirrors(c))
       if (mirror != kNoFacet) prefetch(cell_of(mirror));
   }

@@ -249,6 +249,18 @@ bool Operation<Locks>::removes(VertexId v) const {
 }
 
 template <class Locks>
+bool Operation<Locks>::keeps_edge(VertexId u, VertexId v) const {
+  return std::any_of(region_.boundary.begin(), region_.boundary.end(), [&](FacetId facet) {
+    const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
+    const auto has = [&](VertexId w) {
+      return vertices[static_cast<unsigned>(index_in_cell(facet))] != w &&
+             std::find(vertices.begin(), vertices.end(), w) != vertices.end();
+    };
+    return has(u) && has(v);
+  });
+}
+
+template <class Locks>
 void Operation<Locks>::collect_boundary() {
   region_.boundary.clear();
   for (const CellId c : region_.cells) {

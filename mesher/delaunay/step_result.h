@@ -12,6 +12,7 @@ enum class StepResult {
   kTooNear,        ///< a commit found a vertex too near, or the region has too many vertices
   kNoMove,         ///< R7 found no point for a vertex of a poor cell
   kCovered,        ///< the worker found an isosurface vertex that covers the point
+  kAtFloor,        ///< an edge of a line is too short to be split (refine/line_edges.h)
   kNotBetter,      ///< an optimisation found no better cells (optimize/)
 };
 

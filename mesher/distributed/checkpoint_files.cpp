@@ -33,9 +33,9 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 // Reads "name: value" lines one after the other.
-class Lines {
+class CheckedLines {
  public:
-  Lines(const std::string& path, std::string_view text) : path_(path), rest_(text) {}
+  CheckedLines(const std::string& path, std::string_view text) : path_(path), rest_(text) {}
 
   bool is_at_end() const { return rest_.empty(); }
   Fact next() {
@@ -69,7 +69,7 @@ class Lines {
   int number_ = 0;
 };
 
-CheckpointPiece piece_of(const std::string& text, const Lines& lines) {
+CheckpointPiece piece_of(const std::string& text, const CheckedLines& lines) {
   const std::size_t first = text.find(' '), second = text.find(' ', first + 1);
   if (second == std::string::npos) lines.fail("\"vertices bytes SHA-256\"");
   const std::string_view all = text;
@@ -109,7 +109,7 @@ std::string file_of(const CheckpointText& text) {
 }
 
 CheckpointText read_checkpoint_text(const std::string& path, std::string_view file) {
-  Lines lines(path, checked_lines(path, file));
+  CheckedLines lines(path, checked_lines(path, file));
   lines.next();  // the magic
   CheckpointText text;
   for (std::uint64_t left = lines.number("facts"); left > 0; --left) text.facts.push_back(lines.next());

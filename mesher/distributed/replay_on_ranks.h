@@ -3,8 +3,7 @@
 // mesh of the run is the Delaunay mesh of the vertices that a serial run of all operations leaves:
 //
 //   1  A rank carries out its own operations, and what it learnt, on the triangulation of the vertices that
-//   it
-//      has. Each operation must fit, as in the replay of a run on one machine.
+//      it has. Each operation must fit, as in the replay of a run on one machine.
 //   2  Every vertex has one history. The rank with the point in its block receives what all logs say of the
 //      point, and follows it step by step. In one step only one rank may change the point. Who learns of a
 //      vertex, or of its removal, must learn what the steps before have left.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "io/buckets.h"
 #include "podm/errors.h"
@@ -224,6 +226,29 @@ class SimplexSorter {
   int bucket_bits_;  // low bits of the first vertex, which distinguish simplices of one bucket
 };
 
+// Renumbers the vertices of the edges. Sorts the lines by their labels, and the edges by their vertices.
+void sort_lines(MeshLines& lines, const std::vector<VertexId>& position) {
+  std::vector<std::uint32_t> order(lines.labels_of_line.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::uint32_t line) { return lines.labels_of_line[line]; });
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<std::vector<LabelIndex>> labels;
+  for (const std::uint32_t line : order) {
+    place[line] = static_cast<std::uint32_t>(labels.size());
+    labels.push_back(std::move(lines.labels_of_line[line]));
+  }
+  lines.labels_of_line.swap(labels);
+  std::vector<std::pair<std::array<VertexId, 2>, std::uint32_t>> edges;
+  edges.reserve(lines.edges.size());
+  for (std::size_t e = 0; e < lines.edges.size(); ++e) {
+    std::array<VertexId, 2> edge{position[lines.edges[e][0]], position[lines.edges[e][1]]};
+    put_in_order(edge[0], edge[1]);
+    edges.emplace_back(edge, place[lines.line_of_edge[e]]);
+  }
+  std::ranges::sort(edges);
+  for (std::size_t e = 0; e < edges.size(); ++e) std::tie(lines.edges[e], lines.line_of_edge[e]) = edges[e];
+}
+
 }  // namespace
 
 void canonicalize(TetMesh& mesh, int threads) {
@@ -231,6 +256,7 @@ void canonicalize(TetMesh& mesh, int threads) {
   const std::vector<VertexId> position = sort_vertices(mesh.vertices, used);
   SimplexSorter(mesh.cells, mesh.cell_labels, position, used).sort();
   SimplexSorter(mesh.facets, mesh.facet_labels, position, used).sort();
+  sort_lines(mesh.lines, position);
 }
 
 }  // namespace podm

@@ -59,6 +59,14 @@ std::string LabelNames::of_pair(const LabelPair& pair) const {
   return names_[pair[1]] + "|" + names_[pair[0]];
 }
 
+std::string LabelNames::of_line(const std::vector<LabelIndex>& labels) const {
+  std::string text;
+  for (const LabelIndex label : labels)
+    if (label != kBackground) text += names_[label] + "|";
+  if (!labels.empty() && labels.front() == kBackground) return text + names_[kBackground];
+  return text.substr(0, text.size() - 1);
+}
+
 std::vector<std::array<std::uint32_t, 4>> colours_of(const std::vector<Label>& labels) {
   std::vector<std::array<std::uint32_t, 4>> colours;
   for (std::size_t i = 1; i < labels.size(); ++i)

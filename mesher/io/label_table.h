@@ -22,6 +22,8 @@ class LabelNames {
   /// Returns the name of the label, then that of the label on its other side: "kidney|outside",
   /// "liver|kidney".
   std::string of_pair(const LabelPair& pair) const;
+  /// Returns the names of the labels of a line, the background's last: "liver|kidney|outside".
+  std::string of_line(const std::vector<LabelIndex>& labels) const;
 
  private:
   std::vector<std::string> names_;

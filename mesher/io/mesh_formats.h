@@ -10,8 +10,9 @@ namespace podm {
 
 using Losses = std::vector<std::string>;  ///< as write_mesh() returns them
 
-/// VTK XML, appended raw binary: `path` holds the cells, `<stem>_facets.vtu` beside it the facets.
-void write_vtu(const TetMesh& mesh, const std::string& path);
+/// VTK XML, appended raw binary: `path` holds the cells, `<stem>_facets.vtu` beside it the facets, and
+/// `<stem>_lines.vtu` the lines if they were asked for. Reports such a file of another mesh.
+Losses write_vtu(const TetMesh& mesh, const std::string& path);
 
 /// XDMF, with the arrays in `<stem>.h5` beside it (io/write_xdmf.h).
 void write_xdmf(const TetMesh& mesh, const std::string& path);

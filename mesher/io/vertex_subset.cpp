@@ -4,16 +4,12 @@
 
 namespace podm {
 
-void VertexSubset::assign(const std::vector<std::array<std::uint32_t, 3>>& facets) {
+void VertexSubset::clear() {
   for (const std::uint32_t vertex : vertices_) position_[vertex] = kUnused;
   vertices_.clear();
-  for (const auto& facet : facets) {
-    for (const std::uint32_t vertex : facet) {
-      if (position_[vertex] != kUnused) continue;
-      position_[vertex] = 0;
-      vertices_.push_back(vertex);
-    }
-  }
+}
+
+void VertexSubset::number() {
   if (vertices_.size() > position_.size() / kSparse) {  // a scan is then cheaper than a sort
     vertices_.clear();
     for (std::size_t v = 0; v < position_.size(); ++v)

@@ -1,6 +1,6 @@
 // Abaqus input (.inp) for Abaqus and CalculiX: nodes, one element set of C3D4 per label, one element surface
-// per label pair. The surface "liver-kidney" consists of sides of liver cells. Numbers of nodes and elements
-// are positions plus one. Format: Abaqus Keywords Guide, *NODE, *ELEMENT, *SURFACE.
+// per label pair, one node set per line. The surface "liver-kidney" consists of sides of liver cells. Numbers
+// of nodes and elements are positions plus one. Format: Abaqus Keywords Guide, *NODE, *ELEMENT, *SURFACE.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -73,6 +73,8 @@ class AbaqusWriter {
       volume_names_.add(sets_.names[label], static_cast<std::int32_t>(mesh.labels[label].value));
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
       surface_names_.add(sets_.names.of_pair(sets_.pairs[i]), MeshSets::surface_tag(i));
+    for (std::size_t line = 0; line < sets_.line_names.size(); ++line)
+      line_names_.add(sets_.line_names[line], MeshSets::line_tag(line));
   }
 
   Losses write() {
@@ -81,6 +83,7 @@ class AbaqusWriter {
     print_nodes();
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) print_elements(i);
     print_surfaces();
+    print_lines();
     text_.flush();
     return losses_;
   }
@@ -100,6 +103,8 @@ class AbaqusWriter {
       text_.print(FMT_COMPILE("** pair {} {} surface {} {}\n"), mesh_.labels[a].value, mesh_.labels[b].value,
                   surface_names_[i], sets_.names.of_pair(sets_.pairs[i]));
     }
+    for (std::size_t line = 0; line < sets_.line_names.size(); ++line)
+      text_.print(FMT_COMPILE("** line nset {} {}\n"), line_names_[line], sets_.line_names[line]);
   }
 
   // Reports changed names. A pair of unchanged names is joined by a dash.
@@ -161,10 +166,22 @@ class AbaqusWriter {
     }
   }
 
+  void print_lines() {
+    constexpr std::size_t kNumbersPerLine = 16;  // as many as Abaqus reads
+    for (std::size_t line = 0; line < sets_.line_names.size(); ++line) {
+      text_.print(FMT_COMPILE("*NSET, NSET={}\n"), line_names_[line]);
+      const std::vector<std::uint32_t> vertices = vertices_of_line(sets_, mesh_.lines, line);
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const bool is_last = i + 1 == vertices.size() || (i + 1) % kNumbersPerLine == 0;
+        text_.print(FMT_COMPILE("{}{}"), vertices[i] + 1, is_last ? "\n" : ", ");
+      }
+    }
+  }
+
   const TetMesh& mesh_;
   TextFile text_;
   const MeshSets sets_;
-  SetNames volume_names_, surface_names_;
+  SetNames volume_names_, surface_names_, line_names_;
   Losses losses_;
 };
 

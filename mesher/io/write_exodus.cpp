@@ -1,7 +1,8 @@
-// Exodus II: one element block per label, one side set per label pair, both with the names and numbers of
-// Gmsh files. Elements are numbered block after block. Information records list the space, labels and pairs.
-// The arrays are those that the Exodus library makes for a mesh without fields in a netCDF file. Format:
-// "EXODUS: A Finite Element Data Model", appendix "Implementation of EXODUS with netCDF".
+// Exodus II: one element block per label, one side set per label pair, one node set per line, all with the
+// names and numbers of Gmsh files. Elements are numbered block after block. Information records list the
+// space, labels and pairs. The arrays are those that the Exodus library makes for a mesh without fields in a
+// netCDF file. Format: "EXODUS: A Finite Element Data Model", appendix "Implementation of EXODUS with
+// netCDF".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +38,7 @@ class ExodusWriter {
     }
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
       side_set_names_.push_back(cut(sets_.names.of_pair(sets_.pairs[i])));
+    for (const std::string& name : sets_.line_names) node_set_names_.push_back(cut(name));
   }
 
   // Throws InputError if an array exceeds its 32-bit size.
@@ -56,6 +58,7 @@ class ExodusWriter {
     add_information();
     add_blocks(name_bytes);
     if (sets_.pairs.size() > 0) add_side_sets(name_bytes);
+    if (!node_set_names_.empty()) add_node_sets(name_bytes);
     file_.add_variable("time_whole", NetcdfFile::kDouble, {time_step}, {});
     file_.write(file);
     return losses_;
@@ -155,6 +158,22 @@ class ExodusWriter {
     }
   }
 
+  void add_node_sets(Dimension name_bytes) {
+    const Dimension num_sets = file_.add_dimension("num_node_sets", node_set_names_.size());
+    std::vector<std::int32_t> ids;
+    for (std::size_t line = 0; line < node_set_names_.size(); ++line) ids.push_back(MeshSets::line_tag(line));
+    file_.add_ints("ns_status", num_sets, std::vector<std::int32_t>(ids.size(), 1));
+    file_.add_ints("ns_prop1", num_sets, ids, {{"name", "ID"}});
+    file_.add_texts("ns_names", num_sets, name_bytes, node_set_names_);
+    for (std::size_t line = 0; line < node_set_names_.size(); ++line) {
+      std::vector<std::int32_t> nodes;
+      for (const std::uint32_t vertex : vertices_of_line(sets_, mesh_.lines, line))
+        nodes.push_back(static_cast<std::int32_t>(vertex + 1));
+      const Dimension num_nodes = file_.add_dimension(fmt::format("num_nod_ns{}", line + 1), nodes.size());
+      file_.add_ints(fmt::format("node_ns{}", line + 1), num_nodes, std::move(nodes));
+    }
+  }
+
   // Returns the number of a cell, from 1, in the order of the blocks.
   std::uint32_t element_of(std::uint32_t cell) const {
     const auto block = static_cast<std::size_t>(
@@ -170,7 +189,7 @@ class ExodusWriter {
   const MeshSets sets_;
   const std::vector<FacetSide> sides_;
   std::vector<std::size_t> first_element_;  // of each block
-  std::vector<std::string> block_names_, side_set_names_;
+  std::vector<std::string> block_names_, side_set_names_, node_set_names_;
   std::size_t longest_name_ = kShortName;
   Losses losses_;
   NetcdfFile file_;

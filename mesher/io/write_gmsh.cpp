@@ -1,10 +1,11 @@
-// Gmsh MSH 4.1, binary. Every label is a volume and every label pair a surface. Each is a discrete entity
-// with a physical group of the same name. Elements and nodes are stored in one block per entity.
+// Gmsh MSH 4.1, binary. Every label is a volume, every label pair a surface and every line a curve. Each is a
+// discrete entity with a physical group of the same name. Elements and nodes are stored in one block per
+// entity.
 //
 // Tags: the tag of a volume entity is its position in TetMesh::labels, and its physical group is the label
 // value (for all volumes the position, if one value is not a positive int). The tag of a surface entity and
-// of its group is the number of the pair. Node tags are vertex positions plus one. Format: Gmsh reference
-// manual, "MSH file format".
+// of its group is the number of the pair, and likewise for curves. Node tags are vertex positions plus one.
+// Format: Gmsh reference manual, "MSH file format".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +25,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "Gmsh's byte order mark is written as little-endian");
 
-constexpr int kGmshTriangle = 2, kGmshTetrahedron = 4;  // element types
-constexpr std::int32_t kSurfaceDimension = 2, kVolumeDimension = 3;
+constexpr int kGmshLine = 1, kGmshTriangle = 2, kGmshTetrahedron = 4;  // element types
+constexpr std::int32_t kCurveDimension = 1, kSurfaceDimension = 2, kVolumeDimension = 3;
 
 struct Box {
   std::array<double, 3> low, high;
@@ -75,7 +76,11 @@ class GmshWriter {
   }
 
   void write_physical_names() {
-    file_.write(fmt::format("$PhysicalNames\n{}\n", sets_.pairs.size() + sets_.volumes.size()));
+    file_.write(fmt::format("$PhysicalNames\n{}\n", num_entities()));
+    for (std::size_t line = 0; line < num_lines(); ++line) {
+      file_.write(
+          fmt::format("{} {} \"{}\"\n", kCurveDimension, MeshSets::line_tag(line), sets_.line_names[line]));
+    }
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       file_.write(fmt::format("{} {} \"{}\"\n", kSurfaceDimension, surface_tag(i),
                               sets_.names.of_pair(sets_.pairs[i])));
@@ -86,12 +91,20 @@ class GmshWriter {
     file_.write("$EndPhysicalNames\n");
   }
 
+  std::size_t num_lines() const { return sets_.line_names.size(); }
+  std::size_t num_entities() const { return num_lines() + sets_.pairs.size() + sets_.volumes.size(); }
   void put_size(std::size_t size) { file_.put(std::uint64_t{size}); }
 
   void write_entities() {
     file_.write("$Entities\n");
-    for (const std::size_t count : {std::size_t{0}, std::size_t{0}, sets_.pairs.size(), sets_.volumes.size()})
+    for (const std::size_t count : {std::size_t{0}, num_lines(), sets_.pairs.size(), sets_.volumes.size()})
       put_size(count);
+    for (std::size_t line = 0; line < num_lines(); ++line) {
+      Box box;
+      for (const std::uint32_t edge : sets_.edges_of_line[line])
+        for (const std::uint32_t vertex : mesh_.lines.edges[edge]) box.include(mesh_.vertices[vertex]);
+      put_entity(MeshSets::line_tag(line), box, MeshSets::line_tag(line), {});
+    }
     std::vector<Box> volume_boxes(mesh_.labels.size());  // boxes of its surfaces, which close the volume
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       Box box;
@@ -125,16 +138,22 @@ class GmshWriter {
     for (const std::int32_t surface : boundary) file_.put(surface);
   }
 
-  // Assigns a vertex to the first surface through it, otherwise to the volume around it.
+  // Assigns a vertex to the first curve through it, otherwise to the first surface, otherwise to the volume
+  // around it.
   Grouping group_vertices() const {
-    // Groups: surfaces, then labels.
-    const auto first_volume = static_cast<std::uint32_t>(sets_.pairs.size());
+    // Groups: lines, then surfaces, then labels.
+    const auto first_surface = static_cast<std::uint32_t>(num_lines());
+    const auto first_volume = static_cast<std::uint32_t>(num_lines() + sets_.pairs.size());
     std::vector<std::uint32_t> group(mesh_.vertices.size(), first_volume);
     for (std::size_t i = 0; i < mesh_.cells.size(); ++i)
       for (const std::uint32_t vertex : mesh_.cells[i]) group[vertex] = first_volume + mesh_.cell_labels[i];
-    for (std::uint32_t pair = 0; pair < first_volume; ++pair)
+    for (std::uint32_t pair = 0; pair < sets_.pairs.size(); ++pair)
       for (const std::uint32_t facet : sets_.facets_of_pair[pair])
-        for (const std::uint32_t vertex : mesh_.facets[facet]) group[vertex] = std::min(group[vertex], pair);
+        for (const std::uint32_t vertex : mesh_.facets[facet])
+          group[vertex] = std::min(group[vertex], first_surface + pair);
+    for (std::size_t edge = 0; edge < mesh_.lines.edges.size(); ++edge)
+      for (const std::uint32_t vertex : mesh_.lines.edges[edge])
+        group[vertex] = std::min(group[vertex], mesh_.lines.line_of_edge[edge]);
     return Grouping(group.size(), first_volume + mesh_.labels.size(),
                     [&](std::size_t v) { return group[v]; });
   }
@@ -147,9 +166,7 @@ class GmshWriter {
     put_section_head(num_blocks, mesh_.vertices.size());
     for (std::size_t g = 0; g < groups.num_groups(); ++g) {
       if (groups[g].empty()) continue;
-      const bool on_surface = g < sets_.pairs.size();
-      file_.put(on_surface ? kSurfaceDimension : kVolumeDimension);
-      file_.put(on_surface ? surface_tag(g) : static_cast<std::int32_t>(g - sets_.pairs.size()));
+      put_entity_of_group(g);
       file_.put(std::int32_t{0});  // no parametric coordinates
       put_size(groups[g].size());
       for (const std::uint32_t vertex : groups[g]) put_size(std::size_t{vertex} + 1);
@@ -158,15 +175,34 @@ class GmshWriter {
     file_.write("\n$EndNodes\n");
   }
 
+  // Puts the dimension and the tag of an entity.
+  void put_entity_of_group(std::size_t group) {
+    const std::size_t first_surface = num_lines(), first_volume = first_surface + sets_.pairs.size();
+    if (group < first_surface) {
+      file_.put(kCurveDimension);
+      file_.put(MeshSets::line_tag(group));
+    } else if (group < first_volume) {
+      file_.put(kSurfaceDimension);
+      file_.put(surface_tag(group - first_surface));
+    } else {
+      file_.put(kVolumeDimension);
+      file_.put(static_cast<std::int32_t>(group - first_volume));
+    }
+  }
+
   void write_elements() {
     file_.write("$Elements\n");
-    put_section_head(sets_.pairs.size() + sets_.volumes.size(), mesh_.facets.size() + mesh_.cells.size());
+    put_section_head(num_entities(), mesh_.facets.size() + mesh_.cells.size() + mesh_.lines.edges.size());
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
       put_elements(kSurfaceDimension, surface_tag(i), kGmshTriangle, sets_.facets_of_pair[i], mesh_.facets,
                    1);
     for (const LabelIndex label : sets_.volumes) {
       put_elements(kVolumeDimension, label, kGmshTetrahedron, sets_.cells_of_label[label], mesh_.cells,
                    mesh_.facets.size() + 1);
+    }
+    for (std::size_t line = 0; line < num_lines(); ++line) {
+      put_elements(kCurveDimension, MeshSets::line_tag(line), kGmshLine, sets_.edges_of_line[line],
+                   mesh_.lines.edges, mesh_.facets.size() + mesh_.cells.size() + 1);
     }
     file_.write("\n$EndElements\n");
   }

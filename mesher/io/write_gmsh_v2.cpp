@@ -26,7 +26,10 @@ void print_comments(TextFile& text, const TetMesh& mesh, const MeshSets& sets) {
 }
 
 void print_names(TextFile& text, const MeshSets& sets) {
-  text.print(FMT_COMPILE("$PhysicalNames\n{}\n"), sets.pairs.size() + sets.volumes.size());
+  text.print(FMT_COMPILE("$PhysicalNames\n{}\n"),
+             sets.line_names.size() + sets.pairs.size() + sets.volumes.size());
+  for (std::size_t line = 0; line < sets.line_names.size(); ++line)
+    text.print(FMT_COMPILE("1 {} \"{}\"\n"), MeshSets::line_tag(line), sets.line_names[line]);
   for (std::size_t i = 0; i < sets.pairs.size(); ++i)
     text.print(FMT_COMPILE("2 {} \"{}\"\n"), MeshSets::surface_tag(i), sets.names.of_pair(sets.pairs[i]));
   for (const LabelIndex label : sets.volumes)
@@ -44,7 +47,8 @@ void print_nodes(TextFile& text, const TetMesh& mesh) {
 }
 
 void print_elements(TextFile& text, const TetMesh& mesh, const MeshSets& sets) {
-  text.print(FMT_COMPILE("$Elements\n{}\n"), mesh.facets.size() + mesh.cells.size());
+  const std::size_t first_edge = mesh.facets.size() + mesh.cells.size() + 1;
+  text.print(FMT_COMPILE("$Elements\n{}\n"), first_edge - 1 + mesh.lines.edges.size());
   for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
     const auto& [a, b, c] = mesh.facets[i];
     const std::int32_t tag = MeshSets::surface_tag(sets.pairs.number_of(mesh.facet_labels[i]));
@@ -55,6 +59,11 @@ void print_elements(TextFile& text, const TetMesh& mesh, const MeshSets& sets) {
     const std::int32_t tag = sets.volume_tags[mesh.cell_labels[i]];
     text.print(FMT_COMPILE("{} 4 2 {} {} {} {} {} {}\n"), mesh.facets.size() + i + 1, tag, tag, a + 1, b + 1,
                c + 1, d + 1);
+  }
+  for (std::size_t i = 0; i < mesh.lines.edges.size(); ++i) {
+    const auto& [a, b] = mesh.lines.edges[i];
+    const std::int32_t tag = MeshSets::line_tag(mesh.lines.line_of_edge[i]);
+    text.print(FMT_COMPILE("{} 1 2 {} {} {} {}\n"), first_edge + i, tag, tag, a + 1, b + 1);
   }
   text.put("$EndElements\n");
 }

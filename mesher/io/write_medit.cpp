@@ -1,5 +1,5 @@
 // Medit (.mesh) ascii. The reference of a tetrahedron is its label value; that of a triangle numbers its
-// label pair.
+// label pair, that of an edge its line.
 #include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
@@ -25,6 +25,18 @@ void print_comments(TextFile& text, const TetMesh& mesh, const LabelPairs& pairs
     text.print(FMT_COMPILE("# pair {} {} {} {}\n"), i + 1, mesh.labels[a].value, mesh.labels[b].value,
                names.of_pair(pairs[i]));
   }
+  const auto& lines = mesh.lines.labels_of_line;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    text.print(FMT_COMPILE("# line {} {}\n"), i + 1, names.of_line(lines[i]));
+}
+
+// Files without lines have no such section.
+void print_edges(TextFile& text, const MeshLines& lines) {
+  if (lines.edges.empty()) return;
+  text.print(FMT_COMPILE("Edges\n{}\n"), lines.edges.size());
+  for (std::size_t i = 0; i < lines.edges.size(); ++i)
+    text.print(FMT_COMPILE("{} {} {}\n"), lines.edges[i][0] + 1, lines.edges[i][1] + 1,
+               lines.line_of_edge[i] + 1);
 }
 
 }  // namespace
@@ -37,6 +49,7 @@ void write_medit(const TetMesh& mesh, const std::string& path) {
   print_comments(text, mesh, pairs);
   text.print(FMT_COMPILE("Dimension 3\nVertices\n{}\n"), mesh.vertices.size());
   for (const auto& [x, y, z] : mesh.vertices) text.print(FMT_COMPILE("{} {} {} 0\n"), x, y, z);
+  print_edges(text, mesh.lines);
   text.print(FMT_COMPILE("Triangles\n{}\n"), mesh.facets.size());
   for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
     const auto& [a, b, c] = mesh.facets[i];

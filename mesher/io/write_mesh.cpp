@@ -20,6 +20,14 @@ Losses write_all(const TetMesh& mesh, const std::string& path) {
   return {};
 }
 
+// Formats that hold all of a mesh but its lines.
+template <void (*Write)(const TetMesh&, const std::string&)>
+Losses write_without_lines(const TetMesh& mesh, const std::string& path) {
+  Write(mesh, path);
+  if (mesh.lines.edges.empty()) return {};
+  return {fmt::format("the {} edges of lines are left out, the format has none", mesh.lines.edges.size())};
+}
+
 // Returns the paths of the files that are written in addition to the file of that path.
 using Beside = std::vector<std::string> (*)(const std::string& path);
 std::vector<std::string> nothing(const std::string&) { return {}; }
@@ -38,16 +46,16 @@ struct MeshFormat {
   Beside beside;
 };
 
-const std::array<MeshFormat, 10> kMeshFormats{{{".vtu", write_all<write_vtu>, facets},
+const std::array<MeshFormat, 10> kMeshFormats{{{".vtu", write_vtu, facets},
                                                {".mesh", write_all<write_medit>, nothing},
                                                {".msh", write_all<write_gmsh>, nothing},
                                                {".xdmf", write_all<write_xdmf>, arrays},
                                                {".inp", write_abaqus, nothing},
                                                {".e", write_exodus, nothing},
                                                {".exo", write_exodus, nothing},
-                                               {".vtk", write_all<write_legacy_vtk>, facets},
-                                               {".node", write_all<write_tetgen>, parts_of_tetgen},
-                                               {".ele", write_all<write_tetgen>, parts_of_tetgen}}};
+                                               {".vtk", write_without_lines<write_legacy_vtk>, facets},
+                                               {".node", write_without_lines<write_tetgen>, parts_of_tetgen},
+                                               {".ele", write_without_lines<write_tetgen>, parts_of_tetgen}}};
 
 std::string known_extensions() {
   std::string text;

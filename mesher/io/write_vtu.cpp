@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <system_error>
 
 #include "files/atomic_file.h"
 #include "io/label_table.h"
@@ -24,7 +25,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files declare little-endian data");
 
-constexpr int kVtkTriangle = 5, kVtkTetrahedron = 10;
+constexpr int kVtkLine = 3, kVtkTriangle = 5, kVtkTetrahedron = 10;
 
 struct VtuArray {
   std::string declaration;  // all attributes except the offset
@@ -84,20 +85,21 @@ void add_cells(std::size_t count, int vertices_per_cell, int cell_type, bool wid
       make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));
 }
 
-// Returns one number per array, with the text in the array's name, and the colours of labels. VTK also has
-// string arrays, but meshio refuses files with them.
-std::string field_data(const TetMesh& mesh) {
-  const auto array = [](const std::string& name, std::uint32_t value) {
-    return fmt::format(
-        R"(<DataArray type="UInt32" Name="{}" NumberOfTuples="1" format="ascii">{}</DataArray>)"
-        "\n",
-        xml_escaped(name), value);
-  };
+// VTK also has string arrays, but meshio refuses files with them. A number has its text as its name.
+std::string field_array(const std::string& name, std::uint32_t value) {
+  return fmt::format(R"(<DataArray type="UInt32" Name="{}" NumberOfTuples="1" format="ascii">{}</DataArray>)"
+                     "\n",
+                     xml_escaped(name), value);
+}
+
+// Returns the space, the promises, the names of labels, `more` arrays, and the colours of labels.
+std::string field_data(const TetMesh& mesh, const std::string& more = {}) {
   const LabelNames names(mesh.labels);
-  std::string text = "<FieldData>\n" + array("space:" + to_string(mesh.space), 1);
-  for (const std::string& promise : promises_of(mesh)) text += array("promise:" + promise, 1);
+  std::string text = "<FieldData>\n" + field_array("space:" + to_string(mesh.space), 1);
+  for (const std::string& promise : promises_of(mesh)) text += field_array("promise:" + promise, 1);
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
-    text += array("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
+    text += field_array("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
+  text += more;
   if (const auto colours = colours_of(mesh.labels); !colours.empty()) {
     text += fmt::format(
         R"(<DataArray type="UInt32" Name="{}" NumberOfComponents="4" NumberOfTuples="{}" format="ascii">)",
@@ -180,6 +182,34 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
   return grid;
 }
 
+VtuGrid line_grid(const TetMesh& mesh, const VertexSubset& subset) {
+  const auto& edges = mesh.lines.edges;
+  VtuGrid grid;
+  grid.num_points = subset.vertices().size();
+  grid.points.push_back(make_array<std::array<double, 3>>(
+      "Float64", "Points", grid.num_points,
+      [&mesh, &subset](std::size_t i) { return mesh.vertices[subset.vertices()[i]]; }, 3));
+  const std::size_t num_ends = 2 * edges.size();
+  const bool wide = is_wide(std::max(grid.num_points, num_ends));
+  add_cells(edges.size(), 2, kVtkLine, wide,
+            make_id_array("connectivity", num_ends, wide,
+                          [&edges, &subset](std::size_t i) { return subset.position(edges[i / 2][i % 2]); }),
+            grid);
+  grid.point_data.push_back(make_array_of("UInt32", "vertex", subset.vertices()));
+  grid.cell_data.push_back(make_array_of("UInt32", "line", mesh.lines.line_of_edge));
+  return grid;
+}
+
+// The name of each line holds its number.
+std::string line_names(const TetMesh& mesh) {
+  const LabelNames names(mesh.labels);
+  std::string text;
+  for (std::size_t line = 0; line < mesh.lines.labels_of_line.size(); ++line)
+    text += field_array("line:" + names.of_line(mesh.lines.labels_of_line[line]),
+                        static_cast<std::uint32_t>(line));
+  return text;
+}
+
 // Adds the number of each point in the whole mesh, under the name that VTK's filters use.
 template <class IdAt>
 void add_global_ids(std::size_t num_points, IdAt id_at, VtuGrid& grid) {
@@ -187,12 +217,15 @@ void add_global_ids(std::size_t num_points, IdAt id_at, VtuGrid& grid) {
   grid.point_data.push_back(make_array<std::int64_t>("Int64", kGlobalIds, num_points, id_at));
 }
 
+std::string path_of_part(const std::string& path, const char* part) {
+  const std::filesystem::path cells(path);
+  return (cells.parent_path() / (cells.stem().string() + part + cells.extension().string())).string();
+}
+
 }  // namespace
 
-std::string facets_path_of(const std::string& path) {
-  const std::filesystem::path cells(path);
-  return (cells.parent_path() / (cells.stem().string() + "_facets" + cells.extension().string())).string();
-}
+std::string facets_path_of(const std::string& path) { return path_of_part(path, "_facets"); }
+std::string lines_path_of(const std::string& path) { return path_of_part(path, "_lines"); }
 
 std::deque<AtomicFile> write_vtu_aside(const TetMesh& mesh, const std::vector<std::uint64_t>* vertex_ids,
                                        const std::string& path) {
@@ -215,12 +248,20 @@ std::deque<AtomicFile> write_vtu_aside(const TetMesh& mesh, const std::vector<st
     add_global_ids(facets.num_points, id_at, facets);
   }
   write_grid(files[1], facets, labels_and_space);
+  if (!mesh.lines.are_kept()) return files;
+  files.emplace_back(lines_path_of(path));
+  subset.assign(mesh.lines.edges);
+  write_grid(files[2], line_grid(mesh, subset), field_data(mesh, line_names(mesh)));
   return files;
 }
 
-void write_vtu(const TetMesh& mesh, const std::string& path) {
+Losses write_vtu(const TetMesh& mesh, const std::string& path) {
   std::deque<AtomicFile> files = write_vtu_aside(mesh, nullptr, path);
   publish_together(files);
+  const std::filesystem::path lines = lines_path_of(path);
+  std::error_code ignored;  // the mesh is written
+  if (mesh.lines.are_kept() || !std::filesystem::exists(lines, ignored)) return {};
+  return {fmt::format("{} beside it is of another mesh", lines.filename().string())};
 }
 
 }  // namespace podm

@@ -16,10 +16,12 @@ inline constexpr const char* kGlobalIds = "GlobalNodeIds";
 
 /// Returns "x_facets.vtu" for "x.vtu", and likewise for any extension.
 std::string facets_path_of(const std::string& path);
+/// Returns "x_lines.vtu" for "x.vtu", and likewise for any extension.
+std::string lines_path_of(const std::string& path);
 
-/// Writes the files of cells and of facets, which have no names until they are published. `vertex_ids`,
-/// unless null, has one number per vertex, for the points of both files. Throws InputError as write_mesh()
-/// does.
+/// Writes the files of cells, of facets, and of lines if they were asked for, which have no names until they
+/// are published. `vertex_ids`, unless null, has one number per vertex, for the points of the first two.
+/// Throws InputError as write_mesh() does.
 std::deque<AtomicFile> write_vtu_aside(const TetMesh& mesh, const std::vector<std::uint64_t>* vertex_ids,
                                        const std::string& path);
 

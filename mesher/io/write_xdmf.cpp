@@ -55,6 +55,9 @@ class WrittenVertices {
   std::vector<std::uint32_t> vertices_;
 };
 
+// XDMF describes no arrays without rows.
+bool has_lines(const TetMesh& mesh) { return !mesh.lines.edges.empty(); }
+
 void write_tables(Hdf5File& file, const TetMesh& mesh, const LabelPairs& pairs) {
   const LabelNames names(mesh.labels);
   std::vector<std::string> label_names, pair_names;
@@ -70,6 +73,11 @@ void write_tables(Hdf5File& file, const TetMesh& mesh, const LabelPairs& pairs) 
       "pairs/labels", pairs.size(), 2,
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[pairs[i][side]].value; });
   file.write_strings("pairs/name", pair_names);
+  if (!has_lines(mesh)) return;
+  std::vector<std::string> line_names;
+  for (const auto& labels : mesh.lines.labels_of_line) line_names.push_back(names.of_line(labels));
+  file.make_group("line_sets");
+  file.write_strings("line_sets/name", line_names);
 }
 
 // Writes numbers of vertices as the arrays of `part` have them.
@@ -78,6 +86,14 @@ void write_ids(SharedFile& file, const XdmfPart& part, const RowsInFile& to, std
                std::uint64_t num_rows, const IdAt& id_at) {
   is_wide(part) ? write_rows<std::int64_t>(file, to, first_row, num_rows, id_at)
                 : write_rows<std::int32_t>(file, to, first_row, num_rows, id_at);
+}
+
+void write_lines(SharedFile& file, const XdmfPart& part, const XdmfArrays& arrays) {
+  const MeshLines& lines = part.mesh.lines;
+  write_ids(file, part, arrays.lines, 0, lines.edges.size(),
+            [&](std::uint64_t i, std::uint64_t end) { return lines.edges[i][end]; });
+  write_rows<std::int32_t>(file, arrays.line_tags, 0, lines.edges.size(),
+                           [&](std::uint64_t i, std::uint64_t) { return lines.line_of_edge[i] + 1; });
 }
 
 std::string data_item(const std::string& file, const char* name, const std::string& sizes, const char* type,
@@ -119,6 +135,10 @@ std::string xdmf_text(const std::string& path, const XdmfPart& part) {
          grid_text({"mesh", "Tetrahedron", "cells", "label", "cell_labels", part.total_cells, 4}, part,
                    file) +
          grid_text({"facets", "Triangle", "facets", "pair", "facet_tags", part.total_facets, 3}, part, file) +
+         (has_lines(part.mesh) ? grid_text({"lines", "PolyLine", "lines", "line", "line_tags",
+                                            part.mesh.lines.edges.size(), 2},
+                                           part, file)
+                               : "") +
          "</Domain>\n</Xdmf>\n";
 }
 
@@ -155,6 +175,11 @@ XdmfArrays create_xdmf_arrays(const std::string& file, const std::string& path, 
   arrays.facets = made.make_dataset("facets", id_type, part.total_facets, 3);
   arrays.facet_tags = made.make_dataset("facet_tags", H5T_STD_I32LE, part.total_facets, 0);
   arrays.facet_labels = made.make_dataset("facet_labels", H5T_STD_U32LE, part.total_facets, 2);
+  if (has_lines(part.mesh)) {
+    const std::size_t num_edges = part.mesh.lines.edges.size();
+    arrays.lines = made.make_dataset("lines", id_type, num_edges, 2);
+    arrays.line_tags = made.make_dataset("line_tags", H5T_STD_I32LE, num_edges, 0);
+  }
   write_tables(made, part.mesh, pairs);
   made.close();
   return arrays;
@@ -184,6 +209,7 @@ void write_xdmf_part(const std::string& file, const std::string& path, const Xdm
   write_rows<std::uint32_t>(
       to, arrays.facet_labels, part.first_facet, mesh.facets.size(),
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[mesh.facet_labels[i][side]].value; });
+  if (has_lines(mesh)) write_lines(to, part, arrays);
   to.finish();
 }
 

@@ -9,10 +9,13 @@
 //   /facet_tags              int32 (k): 1 + the row in /pairs of the labels on the facet's two sides
 //   /facet_labels            uint32 (k, 2): their values; the normal points out of the second, to the first
 //   /pairs/labels, name      uint32 (p, 2), UTF-8 "liver|kidney"
+//   /lines                   as /cells, (e, 2): the edges of lines, if the mesh has some
+//   /line_tags               int32 (e): 1 + the row in /line_sets of the edge's line
+//   /line_sets/name          UTF-8 "liver|kidney|outside"
 //
-// The grid "mesh" holds the cells and their labels, "facets" the facets and their tags. DOLFINx reads them
-// with XDMFFile.read_mesh(name="mesh"), read_meshtags(mesh, name="mesh") and read_meshtags(mesh,
-// name="facets").
+// The grid "mesh" holds the cells and their labels, "facets" the facets and their tags, "lines" the edges of
+// lines and their tags. DOLFINx reads them with XDMFFile.read_mesh(name="mesh"), read_meshtags(mesh,
+// name="mesh"), read_meshtags(mesh, name="facets") and read_meshtags(mesh, name="lines").
 #pragma once
 
 #include <cstdint>
@@ -38,9 +41,9 @@ struct XdmfPart {
   std::uint64_t total_vertices, total_cells, total_facets;
 };
 
-/// The places of the arrays of the whole mesh.
+/// The places of the arrays of the whole mesh. Meshes of several pieces have no lines.
 struct XdmfArrays {
-  RowsInFile points, cells, cell_labels, facets, facet_tags, facet_labels;
+  RowsInFile points, cells, cell_labels, facets, facet_tags, facet_labels, lines, line_tags;
 };
 
 /// Returns "x.h5" for "x.xdmf".

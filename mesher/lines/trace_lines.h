@@ -9,8 +9,7 @@
 //   within kMergeDistance where one arc stands for several (lines/line_graph.h, lines/chains.h). Chords
 //   between them leave the curve by about kSimplifyTolerance.
 // - Every point where three labels meet is within kFoundDistance of an arc, or in an undecided place. The
-// test
-//   is exact: it rules labels out in boxes of down to 1/64 voxel (lines/lattice.h).
+//   test is exact: it rules labels out in boxes of down to 1/64 voxel (lines/lattice.h).
 //
 // The result is the same for any number of threads: blocks are traced independently of each other, and joined
 // in their order.

@@ -223,6 +223,9 @@ void define_mesh(py::module_& module) {
   const auto view = [](auto member, auto make) {
     return [=](const py::object& self) { return make(self.cast<Self>()->mesh().*member, self); };
   };
+  const auto view_of_lines = [](auto member, auto make) {
+    return [=](const py::object& self) { return make(self.cast<Self>()->mesh().lines.*member, self); };
+  };
   const auto rows_of = [](const auto& values, const py::object& owner) { return rows(values, owner); };
   const auto column_of = [](const auto& values, const py::object& owner) { return column(values, owner); };
   py::class_<MeshInMemory, std::shared_ptr<MeshInMemory>>(module, "MeshInMemory")
@@ -231,6 +234,9 @@ void define_mesh(py::module_& module) {
       .def_property_readonly("label_of_cell", view(&TetMesh::cell_labels, column_of))
       .def_property_readonly("facets", view(&TetMesh::facets, rows_of))
       .def_property_readonly("labels_of_facet", view(&TetMesh::facet_labels, rows_of))
+      .def_property_readonly("edges_of_lines", view_of_lines(&MeshLines::edges, rows_of))
+      .def_property_readonly("line_of_edge", view_of_lines(&MeshLines::line_of_edge, column_of))
+      .def_property_readonly("labels_of_lines", [](Self made) { return made->mesh().lines.labels_of_line; })
       .def_property_readonly("labels", &labels_of)
       .def_property_readonly("colours", &colours_of)
       .def_property_readonly("space", [](Self made) { return to_string(made->mesh().space); })

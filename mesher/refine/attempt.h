@@ -35,6 +35,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),
       order_(order) {
+  if (parameters.lines != nullptr) lines_.emplace(mesh, rules_, operation_, *parameters.lines);
   if (order_ != nullptr) unlogged_.operations.reserve(kOperationsToFlush);
   if (order_ != nullptr) unlogged_.removed.reserve(kOperationsToFlush);
 }
@@ -87,7 +88,9 @@ Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
   const bool is_timed =
       Locks::kIsShared && operation_.counters().classified_cells % kAttemptsForOneTimed == 0;
   const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  const Outcome outcome = perturbation_ ? apply_r7(entry.cell) : apply_first_rule(entry.cell);
+  const Outcome outcome = perturbation_ ? apply_r7(entry.cell)
+                          : lines_      ? apply_with_lines(entry.cell)
+                                        : apply_first_rule(entry.cell);
   if (is_timed && outcome == Outcome::kLockConflict)
     operation_.counters().overhead.rollback_s +=
         kAttemptsForOneTimed *
@@ -117,6 +120,67 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
   return Outcome::kSound;
 }
 
+// A split in place of an insertion may leave the cell.
+template <class Locks>
+Outcome Worker<Locks>::apply_with_lines(CellId c) {
+  const std::uint16_t stamp = mesh_.stamp(c);
+  const std::optional<Outcome> split = apply_r0(c);
+  const Outcome outcome = split ? *split : apply_first_rule(c);
+  if (outcome == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
+  return outcome;
+}
+
+// Returns nothing if R0 does not apply to the cell.
+template <class Locks>
+std::optional<Outcome> Worker<Locks>::apply_r0(CellId c) {
+  if (const StepResult looked = lines_->look_in(c); looked != StepResult::kDone) return outcome_of(looked);
+  if (lines_->has_found()) return split_line();
+  const std::optional<SurfaceCenter> missing = lines_->sample_of_missing(c);
+  if (!missing) return lines_->has_found() ? split_line() : std::nullopt;
+  const Outcome sampled = insert_on_isosurface(missing->point, missing->start, Rule::kR3);
+  return sampled == Outcome::kRejected ? std::nullopt : std::optional(sampled);
+}
+
+// Splits the edge that was found, in place of the insertion planned last. Returns nothing if it cannot be
+// split; that plan has been rolled back, too.
+template <class Locks>
+std::optional<Outcome> Worker<Locks>::split_line() {
+  operation_.rollback();
+  StepResult planned = lines_->plan_split();
+  if (planned == StepResult::kDone) planned = plan_r6_removals(lines_->point());
+  if (planned != StepResult::kDone) {
+    operation_.rollback();
+    const Outcome outcome = outcome_of(planned);
+    return outcome == Outcome::kRejected ? std::nullopt : std::optional(outcome);
+  }
+  if (commit(lines_->point(), VertexKind::kLine, Rule::kR0) != Outcome::kCommitted) return std::nullopt;
+  lines_->commit(operation_.inserted());
+  return Outcome::kCommitted;
+}
+
+// Plans an insertion if no edge of a line is to be split instead. Otherwise `outcome` is that of the split.
+template <class Locks>
+StepResult Worker<Locks>::plan_beside_lines(const Point& p, CellId start, std::optional<Outcome>& outcome) {
+  lines_->begin_search();
+  StepResult planned = StepResult::kDone;
+  while (planned == StepResult::kDone && lines_->is_encroached_by(p)) {
+    outcome = split_line();
+    if (outcome) return StepResult::kAtFloor;
+    planned = operation_.plan_insertion(p, start);
+  }
+  return planned;
+}
+
+template <class Locks>
+VertexId Worker<Locks>::insert_on_line(const Point& p, CellId near) {
+  StepResult planned = operation_.plan_insertion(p, cell_with(mesh_, p, near));
+  if (planned == StepResult::kDone) planned = plan_r6_removals(p);
+  if (planned != StepResult::kDone) operation_.rollback();
+  const bool is_inserted =
+      planned == StepResult::kDone && commit(p, VertexKind::kLine, Rule::kR0) == Outcome::kCommitted;
+  return is_inserted ? operation_.inserted() : kNoVertex;
+}
+
 template <class Locks>
 void Worker<Locks>::begin_perturbation(const DihedralBounds& bounds, std::uint64_t seed) {
   perturbation_.emplace(mesh_, isosurface_, parameters_, rules_, operation_, bounds, seed, reads_);
@@ -143,6 +207,11 @@ template <class Locks>
 Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
   StepResult planned = operation_.plan_insertion(z, start);
   if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kCovered;
+  if (lines_ && planned == StepResult::kDone) {
+    std::optional<Outcome> split;
+    planned = plan_beside_lines(z, start, split);
+    if (split) return *split;
+  }
   if (planned == StepResult::kDone) planned = plan_r6_removals(z);
   if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule);
   operation_.rollback();
@@ -160,21 +229,40 @@ bool Worker<Locks>::is_covered(const Point& z) const {
 
 template <class Locks>
 StepResult Worker<Locks>::plan_r6_removals(const Point& z) {
+  const double squared_reach = lines_ ? squared_reach_of_r6_near_lines(z) : rules_.squared_reach_of_r6();
+  const auto removes = [&](VertexId v) {
+    return rules_.r6_removes(v, z) && (!lines_ || squared_distance(mesh_.point(v), z) < squared_reach);
+  };
   bool is_due = false;
-  operation_.for_each_region_vertex_near(rules_.squared_reach_of_r6(),
-                                         [&](VertexId v) { is_due = is_due || rules_.r6_removes(v, z); });
+  operation_.for_each_region_vertex_near(squared_reach, [&](VertexId v) { is_due = is_due || removes(v); });
   StepResult planned = StepResult::kDone;
   if (!is_due) return planned;
   operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
-    if (planned == StepResult::kDone && rules_.r6_removes(v, z) && !operation_.removes(v))
+    if (planned == StepResult::kDone && removes(v) && !operation_.removes(v))
       planned = operation_.plan_removal(v, seed);
   });
   return planned;
 }
 
+// Twice the distance of the nearest isosurface vertex, if that is less than R6's reach (rules.h).
+template <class Locks>
+double Worker<Locks>::squared_reach_of_r6_near_lines(const Point& z) const {
+  double squared_reach = rules_.squared_reach_of_r6();
+  operation_.for_each_region_vertex_near(squared_reach / 4, [&](VertexId v) {
+    if (is_on_isosurface(mesh_.vertex(v).kind))
+      squared_reach = std::min(squared_reach, 4 * squared_distance(mesh_.point(v), z));
+  });
+  return squared_reach;
+}
+
 template <class Locks>
 Outcome Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule rule) {
-  const StepResult planned = operation_.plan_insertion(p, start);
+  StepResult planned = operation_.plan_insertion(p, start);
+  if (lines_ && planned == StepResult::kDone) {
+    std::optional<Outcome> split;
+    planned = plan_beside_lines(p, start, split);
+    if (split) return *split;
+  }
   if (planned == StepResult::kDone) return commit(p, VertexKind::kCircumcenter, rule);
   if (planned == StepResult::kNotInConflict) return give_up();
   operation_.rollback();

@@ -30,6 +30,26 @@ bool MoveJudge::keeps_spacing(const Point& from) const {
   return true;
 }
 
+bool MoveJudge::keeps_lines() {
+  if (parameters_.lines == nullptr) return true;
+  on_lines_.clear();
+  for (CellId c = move_.first_of_star(); c < move_.end(); ++c)
+    for (const VertexId v : std::span(move_.cell(c).vertices).first(3))
+      if (move_.vertex(v).kind == VertexKind::kLine) on_lines_.push_back(v);
+  const auto is_in_star = [&](VertexId v) {
+    return std::find(on_lines_.begin(), on_lines_.end(), v) != on_lines_.end();
+  };
+  const Point& p = move_.point();
+  return std::none_of(on_lines_.begin(), on_lines_.end(), [&](VertexId v) {
+    bool is_in_ball = false;
+    parameters_.lines->for_each_edge_of(v, [&](const LineEdge& edge) {
+      const VertexId other = edge.first == v ? edge.last : edge.first;
+      is_in_ball = is_in_ball || (is_in_star(other) && dot(move_.point(v) - p, move_.point(other) - p) < 0);
+    });
+    return is_in_ball;
+  });
+}
+
 // Looks up a label only where the result depends on it.
 std::optional<double> MoveJudge::quality(double least) {
   const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kGridMargin);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "delaunay/vertex_move.h"
 #include "geometry/dihedral.h"
@@ -27,9 +28,12 @@ class MoveJudge {
   /// True if the vertex, which leaves `from`, keeps the spacing of I1 to I3 from all other vertices and is
   /// nearer to `from` than to any of them.
   bool keeps_spacing(const Point& from) const;
+  /// True if the vertex is in the ball of no edge of a line. Both ends of such an edge would be vertices of
+  /// its star.
+  bool keeps_lines();
   /// The spacing required between vertices of these kinds, mm.
   double spacing_mm(VertexKind a, VertexKind b) const {
-    const bool is_i1 = a == VertexKind::kIsosurface && b == VertexKind::kIsosurface;
+    const bool is_i1 = is_on_isosurface(a) && is_on_isosurface(b);
     return is_i1 ? parameters_.spacing_mm : kRadiusEdgeBound * parameters_.spacing_mm;
   }
   /// Returns the least quality of the planned cells inside the object, or none if one of them is below
@@ -67,6 +71,7 @@ class MoveJudge {
   const Parameters& parameters_;
   const DihedralBounds& bounds_;
   Counters& counters_;
+  std::vector<VertexId> on_lines_;  // scratch
 };
 
 }  // namespace podm

@@ -12,8 +12,9 @@ enum class Outcome {
   kStaleCell,     ///< the cell has died
   kLockConflict,  ///< nothing was changed, and the cell is back on the list
   kRejected,      ///< nothing was changed: a vertex is too near to the point or covers it, or the point lies
-                  ///< outside the ball of its cell, or R7 found no point, or there are no better cells
-  kOutOfLeaf,     ///< nothing was changed, and the cell is deferred
+              ///< outside the ball of its cell, or a line cannot make room for it, or R7 found no point, or
+              ///< there are no better cells
+  kOutOfLeaf,  ///< nothing was changed, and the cell is deferred
 };
 
 /// Returns the outcome of an attempt that ends at a step other than kDone. Throws InternalError for kDone.
@@ -29,6 +30,7 @@ inline Outcome outcome_of(StepResult result) {
     case StepResult::kTooNear:
     case StepResult::kCovered:
     case StepResult::kNoMove:
+    case StepResult::kAtFloor:
     case StepResult::kNotBetter:
       return Outcome::kRejected;
     case StepResult::kDone:

@@ -87,7 +87,8 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   const StepResult planned = operation_.plan_move_to(p);
   if (planned != StepResult::kDone)
     return planned == StepResult::kNotInConflict ? StepResult::kNoMove : planned;
-  if (!judge_.keeps_spacing(mesh_.point(operation_.move().vertex()))) return StepResult::kNoMove;
+  if (!judge_.keeps_spacing(mesh_.point(operation_.move().vertex())) || !judge_.keeps_lines())
+    return StepResult::kNoMove;
   obstacle_ = std::max(obstacle_, Unmoved::kShape);
   const double before = std::min(in_ball, least_quality_in_region(operation_.num_in_ball()));
   const auto quality = judge_.quality(std::min(1.0, before + kQualityStep));

@@ -5,6 +5,7 @@
 #include <concepts>
 
 #include "podm/bounds.h"
+#include "refine/near_lines.h"
 
 namespace podm {
 
@@ -87,7 +88,7 @@ template <class Cells>
 bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius, double squared_delta) const {
   return 4 * squared_radius < squared_delta &&
          std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
+                     [&](VertexId v) { return is_on_isosurface(mesh_.vertex(v).kind); });
 }
 
 template <class Cells>
@@ -121,14 +122,14 @@ Cover RulesOn<Cells>::covered_by(const Cell& cell, double squared_delta) const {
   Cover cover;
   cover.squared_radius = squared_delta;
   for (const VertexId v : cell.vertices) {
-    if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = &mesh_.point(v);
+    if (is_on_isosurface(mesh_.vertex(v).kind)) cover.centers[cover.num_balls++] = &mesh_.point(v);
   }
   return cover;
 }
 
 template <class Cells>
 bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
-  if (mesh_.vertex(by).kind != VertexKind::kIsosurface) return false;
+  if (!is_on_isosurface(mesh_.vertex(by).kind)) return false;
   const double squared = squared_distance(mesh_.point(by), z);
   return squared < squared_delta_ && (!has_deltas_ || squared < squared_delta_at(z));
 }
@@ -172,20 +173,24 @@ std::optional<Point> RulesOn<Cells>::r2_center_by_place(const Examination& t) co
 }
 
 // Returns true if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as
-// long as the facet's circumradius (side = 2 R sin(opposite angle)).
+// long as the facet's circumradius (side = 2 R sin(opposite angle)). Near lines the circumradius must be as
+// long as kNearLinesRatio sides.
 template <class Cells>
 bool RulesOn<Cells>::needs_sample(CellId c, unsigned facet) const {
   const auto& vertices = mesh_.cell(c).vertices;
   std::array<const Point*, 3> p{};
   for (unsigned i = 0; i < 3; ++i) {
     const Vertex& v = mesh_.vertex(vertices[static_cast<unsigned>(kFacetVertices[facet][i])]);
-    if (v.kind != VertexKind::kIsosurface) return true;
+    if (!is_on_isosurface(v.kind)) return true;
     p[i] = &v.point;
   }
   const Vector ab = *p[1] - *p[0], ac = *p[2] - *p[0], bc = *p[2] - *p[1];
   const double a2 = squared_length(bc), b2 = squared_length(ac), c2 = squared_length(ab);
   // R^2 = a2 b2 c2 / (4 |ab x ac|^2)
-  return std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)) <= a2 * b2 * c2 * (1 + kMargin);
+  const double of_sides = std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)),
+               of_radius = a2 * b2 * c2 * (1 + kMargin);
+  if (of_sides > of_radius) return false;
+  return kNearLinesRatio * kNearLinesRatio * of_sides <= of_radius || !is_near_lines(mesh_, vertices, facet);
 }
 
 // Returns true if the facet's dual edge may meet the isosurface, which needs an edge longer than the distance
@@ -255,6 +260,15 @@ std::optional<SurfaceCenter> RulesOn<Cells>::surface_center(const Examination& t
     if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
   }
   return std::nullopt;
+}
+
+template <class Cells>
+auto RulesOn<Cells>::first_crossing(const Point& from, const Point& to) const -> std::optional<Crossing> {
+  constexpr double kBeyond = 1e-6;  // of the way
+  const std::optional<Point> z =
+      ask([&](const auto& oracle) { return oracle.segment_intersection(from, to); });
+  if (!z) return std::nullopt;
+  return Crossing{*z, ask([&](const auto& oracle) { return oracle.label_at(*z + kBeyond * (to - from)); })};
 }
 
 template <class Cells>

@@ -47,6 +47,34 @@
 //   3 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 4 + 4 + 3. With one delta it is 5 delta.
 // R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
 // measured.
+//
+// Lines (refine/line_keeper.h). If lines are kept, the vertices on them are isosurface vertices for all
+// rules, and are never removed. Lines are sampled before R1. Let f = min(s, delta of lines) / 4.
+//   R0  split an edge of a line, at the middle of its arc, (i) in place of a point of another rule in its
+//       diametral ball; (ii) if another vertex of a cell with the edge is in that ball; (iii) if fewer than
+//       three labels are around it. Before (iii) insert the point where a side of the edge's Voronoi polygon
+//       enters a missing label, if it is f or more from all vertices. An edge with an arc shorter than f is
+//       not split. R6 applies after R0, too
+//   R6  removes no vertex that is farther from z than twice the distance d of the nearest isosurface vertex
+//       from z: samples near lines may be at a spacing down to f, and R4 would insert again what R6 removed
+//   R3  near lines (near_lines.h) applies to angles of at most 20.7 degrees: the facet's circumradius is then
+//       at least sqrt(2) sides
+// An edge that cannot be split gives way to a point and may be lost. So a line never refuses a point, and the
+// end of refinement means what it means without lines: no cell violates a rule. The bounds of R2, R4 and R5
+// hold everywhere, and that of R3 is 20.7 degrees near lines and 30 elsewhere. Lost edges are listed.
+//   Termination. A split cuts an arc of length f or more, and each part has a third of it or more: it is the
+//   middle, or a shell around a node. Thus R0 splits finitely often. It also samples finitely often, as each
+//   of these points keeps f from all vertices. From the last insertion of R0 on, R1 to R6 are as above: I2
+//   and I3 hold, as R6 after R0 removes the same vertices as after R1, and what it leaves is 2 d >= 2 m from
+//   z; m is what R0 has left, and R3 keeps at least a side. Near lines the spacing is thus proved to be f,
+//   not s. Splits shorten m only a little. A point at distance d from the nearest vertex, in the ball of an
+//   edge from u to w, sees the edge under at least a right angle: |u - w|^2 >= 2 d^2. Halves of a straight
+//   edge keep d / sqrt(2). After R1 that is delta / sqrt(2), after R4 1.36 times the shortest edge of the
+//   cell, after R3 near lines its shortest side. If R3 applied below 30 degrees near lines, too, a half would
+//   keep 0.71 of a side, and the next facet beside it would do the same: a cascade down to f. R3 elsewhere,
+//   and at facets with a free vertex, may shorten m in this way. No facet away from lines has these edges as
+//   sides. Not proved is that lines are kept. Where two are nearer to each other than about f, edges are
+//   lost.
 #pragma once
 
 #include <concepts>
@@ -56,6 +84,7 @@
 #include "delaunay/mesh.h"
 #include "delaunay/vertex_move.h"
 #include "isosurface/isosurface.h"
+#include "refine/line_edges.h"
 #include "runtime/shared_word.h"
 #include "sizing/delta_field.h"
 #include "sizing/size_field.h"
@@ -64,7 +93,7 @@ namespace podm {
 
 inline constexpr double kMargin = 1e-9;  // relative
 
-enum class Rule { kR1, kR2, kR3, kR4, kR5 };
+enum class Rule { kR1, kR2, kR3, kR4, kR5, kR0 };  // positions in Counters::insertions_by_rule
 
 struct Parameters {
   double delta_mm = 0;  // if delta depends on the place, no delta is larger
@@ -76,6 +105,7 @@ struct Parameters {
   /// grid requests smaller cells. 0: there is no such shell.
   double shell_mm = 0, shell_radius_mm = 0;
   std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta is the same everywhere
+  LineEdges* lines = nullptr;                          // null: no lines are kept
 };
 
 /// The data that the rules need about a cell, requested from the oracle once.
@@ -140,6 +170,13 @@ class RulesOn {
   /// Searches for a surface center as r3_surface_center() does. kUntested: except at facets on which R3 was
   /// tested before, from one cell or the other (Mesh::facets_passing_r3).
   FacetSearch search_facets(const Examination& t, Facets facets) const;
+  /// The first point on the way from one cell's center to another's where the label changes, and the label
+  /// beyond it.
+  struct Crossing {
+    Point point;
+    LabelIndex beyond;
+  };
+  std::optional<Crossing> first_crossing(const Point& from, const Point& to) const;
   /// Returns R4 or R5 if it applies; both insert the circumcenter.
   std::optional<Rule> volume_rule(const Examination& t) const;
   /// The conditions of R4 and R5 for a cell inside the object.

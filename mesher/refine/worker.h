@@ -7,6 +7,7 @@
 #include "delaunay/commit_order.h"
 #include "delaunay/operation.h"
 #include "refine/homes.h"
+#include "refine/line_keeper.h"
 #include "refine/outcome.h"
 #include "refine/perturbation.h"
 #include "refine/poor_element_list.h"
@@ -41,6 +42,11 @@ class Worker {
     homes_ = &homes;
     home_ = home;
   }
+  /// Inserts a vertex on a line, as R0 does, while no other worker runs. `near` is a living cell near it.
+  /// Returns kNoVertex if another vertex is too near.
+  VertexId insert_on_line(const Point& p, CellId near);
+  /// The cells that the last insertion made.
+  const std::vector<CellId>& created() const { return operation_.created(); }
   /// From now on only R7 is applied, to a mesh that violates no other rule. `seed` seeds the choice of new
   /// places for vertices.
   void begin_perturbation(const DihedralBounds& bounds, std::uint64_t seed);
@@ -109,10 +115,15 @@ class Worker {
   void look_ahead();
   Outcome try_entry(const PoorElementList::Entry& entry);
   Outcome apply_first_rule(CellId c);
+  Outcome apply_with_lines(CellId c);
+  std::optional<Outcome> apply_r0(CellId c);
+  std::optional<Outcome> split_line();
+  StepResult plan_beside_lines(const Point& p, CellId start, std::optional<Outcome>& outcome);
   Outcome apply_r7(CellId c);
   Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);
   bool is_covered(const Point& z) const;
   StepResult plan_r6_removals(const Point& z);
+  double squared_reach_of_r6_near_lines(const Point& z) const;
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
@@ -128,6 +139,7 @@ class Worker {
   const std::optional<CountedReads> reads_;
   Rules rules_;
   Operation<Locks> operation_;
+  std::optional<LineKeeper<Locks>> lines_;           // none: no lines are kept
   std::optional<Perturbation<Locks>> perturbation_;  // none: R1 to R6 are applied
   PoorElementList poor_;
   std::vector<PoorElementList::Entry> foreign_, deferred_;

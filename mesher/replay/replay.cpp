@@ -93,8 +93,9 @@ class Replay {
     check(operation_.num_planned_removals() == to_remove_.size(),
           "removes a vertex that is not near its point");
     const auto is_kind = [&](VertexKind kind) { return kind_of_vertex == static_cast<std::uint32_t>(kind); };
-    check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter),
-          "the kind of its vertex is unknown");
+    check(
+        is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter) || is_kind(VertexKind::kLine),
+        "the kind of its vertex is unknown");
     const auto kind = static_cast<VertexKind>(kind_of_vertex);
     check(operation_.commit_insertion(p, kind, kTouching) == StepResult::kDone,
           "its point is a vertex already");

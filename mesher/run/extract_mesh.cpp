@@ -103,6 +103,8 @@ class Extractor {
     });
     write_vertices();
     number_vertices_of_cells();
+    for (auto& edge : out_.lines.edges)
+      for (std::uint32_t& v : edge) v = out_id(v);
     return write_facets();
   }
 
@@ -189,7 +191,7 @@ class Extractor {
     for (VertexId v = begin; v < end; ++v) {
       if (out_ids_[v] != kUsed) continue;
       out_ids_[v] = static_cast<std::uint32_t>(at);
-      if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
+      if (!is_on_isosurface(mesh_.vertex(v).kind)) out_ids_[v] |= kOffIsosurface;
       const Point p = map(to_world_, mesh_.point(v));
       out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
     }
@@ -255,8 +257,9 @@ std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads)
 }
 
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
-                     std::uint64_t& facets_off_isosurface, const CellFilter& is_wanted) {
+                     std::uint64_t& facets_off_isosurface, const CellFilter& is_wanted, MeshLines lines) {
   TetMesh out;
+  out.lines = std::move(lines);
   out.labels = isosurface.image().labels;
   out.space = space;
   facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include "geometry/circumsphere.h"
 #include "geometry/dihedral.h"
@@ -10,6 +12,7 @@
 #include "geometry/tetrahedron.h"
 #include "image/foreground.h"
 #include "image/working_frame.h"
+#include "run/extract_lines.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -230,11 +233,11 @@ struct alignas(64) FacetTally {
   double least_cotangent2 = kInfinity, most_cotangent2 = -kInfinity;
   std::uint64_t bad = 0;
 
-  void add(const Point& a, const Point& b, const Point& c) {
+  void add(const Point& a, const Point& b, const Point& c, double bad_cotangent2 = kBadCotangent2) {
     const double at_a = squared_cotangent(b - a, c - a), at_b = squared_cotangent(c - b, a - b),
                  at_c = squared_cotangent(a - c, b - c);
     const double sharpest = std::max(at_a, std::max(at_b, at_c));
-    bad += sharpest >= kBadCotangent2;
+    bad += sharpest >= bad_cotangent2;
     most_cotangent2 = std::max(most_cotangent2, sharpest);
     least_cotangent2 = std::min(least_cotangent2, std::min(at_a, std::min(at_b, at_c)));
   }
@@ -243,11 +246,66 @@ struct alignas(64) FacetTally {
     most_cotangent2 = std::max(most_cotangent2, b.most_cotangent2);
     bad += b.bad;
   }
+  /// None if there is no facet.
+  std::optional<double> least_angle_deg() const {
+    if (most_cotangent2 == -kInfinity) return std::nullopt;
+    return angle_deg(most_cotangent2);
+  }
 
- private:
   static_assert(kFacetAngleBound == 30);
   static constexpr double kBadCotangent2 = 3;
+  static constexpr double kBadCotangent2NearLines = 2 * 4 - 1;  // R3's circumradius is sqrt(2) sides there
 };
+
+// Measures what is near lines, again, and what is not: most meshes have no lines. Facets and cells are near
+// lines if they have an end of an edge along which three labels meet. Stray edges count: vertices of an arc
+// may be joined by an edge along which other labels meet, and refinement applies the weaker bound there, too.
+class NearLines {
+ public:
+  NearLines(const TetMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& strays)
+      : mesh_(mesh), is_on_line_(mesh.vertices.size()) {
+    for (const auto& edges : {std::cref(mesh.lines.edges), std::cref(strays)})
+      for (const auto& [a, b] : edges.get()) is_on_line_[a] = is_on_line_[b] = true;
+  }
+  void measure(LinesReport& report, Guarantees& guarantees) const;
+
+ private:
+  template <std::size_t N>
+  bool is_near(const std::array<std::uint32_t, N>& vertices) const {
+    return std::any_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return is_on_line_[v]; });
+  }
+
+  const TetMesh& mesh_;
+  std::vector<bool> is_on_line_;
+};
+
+void NearLines::measure(LinesReport& report, Guarantees& guarantees) const {
+  FacetTally near, away;
+  for (const auto& facet : mesh_.facets) {
+    const bool is_near_line = is_near(facet);
+    report.facets_near += is_near_line;
+    (is_near_line ? near : away)
+        .add(point_of(mesh_, facet[0]), point_of(mesh_, facet[1]), point_of(mesh_, facet[2]),
+             is_near_line ? FacetTally::kBadCotangent2NearLines : FacetTally::kBadCotangent2);
+  }
+  guarantees.facet_angle = near.bad + away.bad;
+  report.min_facet_angle_near_deg = near.least_angle_deg();
+  report.min_facet_angle_away_deg = away.least_angle_deg();
+  double max_ratio2 = 0;
+  for_each_measured(mesh_, 0, mesh_.cells.size(), [&](std::size_t c, const Corners&, const CellMeasures& m) {
+    if (!is_near(mesh_.cells[c])) return;
+    ++report.cells_near;
+    max_ratio2 = std::max(max_ratio2, m.squared_radius / m.shortest2);
+  });
+  if (report.cells_near > 0) report.max_radius_edge_near = std::sqrt(max_ratio2);
+}
+
+void measure_lines(const TetMesh& mesh, MeshingReport& report) {
+  const std::vector<std::array<std::uint32_t, 2>> strays = stray_edges(mesh);
+  for (const auto& [a, b] : strays)
+    report.lines->stray_mm += std::sqrt(squared_distance(point_of(mesh, a), point_of(mesh, b)));
+  NearLines(mesh, strays).measure(*report.lines, report.guarantees);
+}
 
 void measure_facets(const TetMesh& mesh, int threads, MeshingReport& report) {
   const auto add = [&](FacetTally& slice, std::size_t begin, std::size_t end) {
@@ -268,6 +326,7 @@ void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeFie
                      MeshingReport& report) {
   const CellTally cells = measure_cells(mesh, Bounds(sizes, image, mesh.space), threads, report);
   measure_facets(mesh, threads, report);
+  if (report.lines) measure_lines(mesh, report);
   for (std::size_t label = 1; label < mesh.labels.size(); ++label) {
     const CellTally::OfLabel& of_label = cells.labels[label];
     report.cells_of_label[mesh.labels[label].value] = of_label.cells;

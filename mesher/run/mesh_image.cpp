@@ -28,8 +28,9 @@ class Run {
     phases_.optimize(*refinement.mesh, report);
     phases_.compare_topology(*refinement.mesh, report);
     const auto extract = [&](Space space) {
+      MeshLines lines = phases_.extract_lines(refinement, report);
       result.mesh = extract_mesh(*refinement.mesh, phases_.isosurface(), space, phases_.loop_threads(),
-                                 report.guarantees.facet_vertices);
+                                 report.guarantees.facet_vertices, {}, std::move(lines));
       refinement.mesh.reset();
     };
     phases_.extract(extract, report);

@@ -8,9 +8,11 @@
 #include "algorithms/memory_model.h"
 #include "algorithms/mend_topology.h"
 #include "image/foreground.h"
+#include "lines/trace_lines.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
 #include "prediction/cost_model.h"
+#include "run/extract_lines.h"
 #include "run/extract_mesh.h"
 #include "run/measure_quality.h"
 #include "run/report_on_smoothing.h"
@@ -76,6 +78,7 @@ void PhasesOfRun::transform(MeshingReport& report) {
 
 void PhasesOfRun::transform(MeshingReport& report, const MakeIsosurface& make) {
   auto weights = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
+  if (options_.lines.are_kept) trace(weights, report);
   announce("transform", 0, 0);
   const double start_s = seconds_();
   isosurface_ = make(std::move(weights));
@@ -104,6 +107,15 @@ std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) c
   return smoothed.weights;
 }
 
+void PhasesOfRun::trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report) {
+  announce("lines", 0, 0);
+  const double start_s = seconds_();
+  const LineOptions traced{
+      .has_lines = true, .threads = loop_threads_, .most_bytes = memory_of_run(options_.limits)};
+  lines_ = std::make_unique<const Lines>(trace_lines(image_, weights.get(), traced), image_, weights);
+  report.phases_s["trace"] = seconds_() - start_s;
+}
+
 void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
   sizes_ = sizes;
   const bool is_as_asked = options_.sizes.target_elements == 0;
@@ -130,6 +142,8 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
       .dihedral_bounds = dihedral_bounds(),
       .deltas = thin ? thin->deltas.graded() : nullptr,
       .thin = thin ? &*thin : nullptr,
+      .lines = lines_.get(),
+      .lines_delta_mm = options_.lines.delta_mm > 0 ? options_.lines.delta_mm : kLinesDelta * sizes.delta_mm,
       .observe_perturbation = [&](double fraction, std::uint64_t cells) {
         announce("perturb", fraction, cells);
       }};
@@ -215,6 +229,12 @@ void PhasesOfRun::compare_topology(Mesh& mesh, MeshingReport& report) const {
   report.guarantees.topology = report.topology->differences.size();
 }
 
+MeshLines PhasesOfRun::extract_lines(const Refinement& refinement, MeshingReport& report) const {
+  if (refinement.line_edges == nullptr) return {};
+  label_cells(*refinement.mesh, *isosurface_, loop_threads_);
+  return podm::extract_lines(*refinement.mesh, *refinement.line_edges, image_, report.lines.emplace());
+}
+
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
   const double start_s = seconds_();
@@ -231,6 +251,7 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   mesh.is_optimized = report.optimization.has_value();
   mesh.smoothing_mm = options_.smoothing_mm;
   if (report.topology) mesh.topology_differences = report.topology->differences;
+  if (report.lines) mesh.lines.are_claimed = report.lines->is_claimed();
   promise_dihedral_bounds(mesh, report);
   if (options_.space != Space::kVoxel) return;
   const double begin_s = seconds_();

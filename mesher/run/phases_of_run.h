@@ -51,6 +51,9 @@ class PhasesOfRun {
   /// Compares the finished mesh with the image if thin layers are kept.
   void compare_topology(Mesh& mesh, MeshingReport& report) const;
 
+  /// Returns the edges of lines in the mesh, with vertices by their ids in the store; none unless lines are
+  /// kept.
+  MeshLines extract_lines(const Refinement& refinement, MeshingReport& report) const;
   /// Calls extract(space), which must make the mesh in mm.
   void extract(const std::function<void(Space)>& extract, MeshingReport& report) const;
   /// Measures the mesh and converts it from mm to the requested space.
@@ -63,6 +66,7 @@ class PhasesOfRun {
 
   std::optional<DihedralBounds> dihedral_bounds() const;
   std::shared_ptr<const VoxelWeights> smooth(MeshingReport& report) const;
+  void trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report);
   void announce(const char* phase, double fraction, std::uint64_t cells) const;
   void simulate(const Refinement& refinement, MeshingReport& report) const;
 
@@ -75,6 +79,7 @@ class PhasesOfRun {
   const double share_of_cells_;
   const Seconds seconds_;
   std::shared_ptr<const Isosurface> isosurface_;
+  std::unique_ptr<const Lines> lines_;          // null: no lines are kept
   SizeOptions sizes_;                           // sizes of the last mesh
   std::optional<SizeField> size_field_;         // size field of the last mesh
   std::shared_ptr<const SizeGrid> asked_grid_;  // of the requested sizes

@@ -50,6 +50,17 @@ class FormatsTest(PodmTestCase):
                 self.assertEqual((self.folder / "back.vtu").read_bytes(), cells.read_bytes())
                 self.assertEqual((self.folder / "back_facets.vtu").read_bytes(), facets.read_bytes())
 
+    def test_lines_come_back_to_the_bit_from_every_format_that_holds_promises(self):
+        cells = self.mesh("a.vtu", "--lines")
+        lines = cells.with_name("a_lines.vtu").read_bytes()
+        for name, *options in [("b" + extension,) for extension in LOSSLESS] + [("c.msh", "--gmsh-version", "2.2")]:
+            with self.subTest(name=name, options=options):
+                self.convert(cells, name, *options)
+                process = self.convert(self.folder / name, "back.vtu")
+                self.assertNotIn("lines in the file", process.stderr)
+                self.assertEqual((self.folder / "back.vtu").read_bytes(), cells.read_bytes())
+                self.assertEqual((self.folder / "back_lines.vtu").read_bytes(), lines)
+
     def test_abaqus_keeps_all_but_what_it_says(self):
         process = self.convert(self.mesh("a.vtu", "--merge", "1,2=big sphere"), "a.inp")
         self.assertIn("'big sphere' is big_sphere", process.stderr)
@@ -165,6 +176,101 @@ class OpenedByOthers(PodmTestCase):
             elements = text.split("$Elements\n", 1)[1].split("\n")[1:]
             self.assertEqual(sum(line.split(" ", 2)[1] == "4" for line in elements if line.count(" ") > 1),
                              record["cells"])
+
+
+class LinesOpenedByOthers(PodmTestCase):
+    """Programs of other projects find the lines of a mesh, with their names and edges."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        try:
+            import vtk
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+        except ImportError:
+            raise unittest.SkipTest("python3-vtk9 is not installed") from None
+        cls.vtk, cls.to_numpy = vtk, staticmethod(vtk_to_numpy)
+
+    def expected(self):
+        """Returns the edges of each line by its name, as vertices of the mesh, from the files of VTK."""
+        self.assert_exit(run_podm("mesh", "phantom:spheres@24", "--radius", 8, "--quiet", "--lines", "-o",
+                                  self.folder / "a.vtu"), 0)
+        reader = self.vtk.vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(self.folder / "a_lines.vtu"))
+        reader.Update()
+        grid = reader.GetOutput()
+        ends = self.to_numpy(grid.GetPointData().GetArray("vertex"))[
+            self.to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 2)]
+        numbers = self.to_numpy(grid.GetCellData().GetArray("line"))
+        fields = grid.GetFieldData()
+        names = {int(fields.GetArray(i).GetTuple1(0)): fields.GetArrayName(i).removeprefix("line:")
+                 for i in range(fields.GetNumberOfArrays()) if fields.GetArrayName(i).startswith("line:")}
+        self.assertEqual(list(names), list(range(len(names))))
+        edges = {name: {tuple(sorted(edge)) for edge in ends[numbers == number].tolist()}
+                 for number, name in names.items()}
+        self.assertTrue(edges and all(edges.values()))
+        return edges
+
+    def converted(self, name, *options):
+        path = self.folder / name
+        self.assert_exit(run_podm("convert", self.folder / "a.vtu", path, *options), 0)
+        return path
+
+    def test_meshio_reads_gmsh_and_medit(self):
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("python3-meshio is not installed")
+        expected = self.expected()
+        names = list(expected)
+        number_of = {tuple(point): number for number, point in enumerate(meshio.read(self.folder / "a.vtu").points)}
+        for name, *options in (("v4.msh",), ("v2.msh", "--gmsh-version", "2.2"), ("m.mesh",)):
+            with self.subTest(name=name):
+                mesh = meshio.read(self.converted(name, *options))
+                array = "medit:ref" if name.endswith(".mesh") else "gmsh:physical"
+                found = {}
+                for block, numbers in zip(mesh.cells, mesh.cell_data[array]):
+                    if block.type == "line":
+                        for edge, number in zip(block.data.tolist(), numbers):
+                            ends = sorted(number_of[tuple(mesh.points[end])] for end in edge)
+                            found.setdefault(names[number - 1], set()).add(tuple(ends))
+                self.assertEqual(found, expected)
+                if name.endswith(".msh"):
+                    self.assertEqual({name for name, (_, size) in mesh.field_data.items() if size == 1}, set(names))
+
+    def test_vtk_reads_the_node_sets_of_exodus(self):
+        expected = self.expected()
+        from vtkmodules.vtkIOExodus import vtkExodusIIReader
+        reader = vtkExodusIIReader()
+        reader.SetFileName(str(self.converted("a.e")))
+        reader.UpdateInformation()
+        sets = {reader.GetObjectName(reader.NODE_SET, i).split(" ID:")[0]:
+                reader.GetNumberOfEntriesInObject(reader.NODE_SET, i)
+                for i in range(reader.GetNumberOfObjects(reader.NODE_SET))}
+        self.assertEqual(sets, {name: len({v for edge in edges for v in edge}) for name, edges in expected.items()})
+
+    def test_node_sets_of_abaqus_have_the_vertices_of_the_lines(self):
+        expected = self.expected()
+        text = self.converted("a.inp").read_text()
+        names = dict(re.findall(r"^\*\* line nset (\S+) (.*)$", text, re.MULTILINE))
+        sets = {names[name]: {int(number) - 1 for number in re.findall(r"\d+", numbers)}
+                for name, numbers in re.findall(r"^\*NSET, NSET=(\S+)\n([\d,\s]+)", text, re.MULTILINE)}
+        self.assertEqual(sets, {name: {v for edge in edges for v in edge} for name, edges in expected.items()})
+        self.assertLessEqual(max(line.count(",") for line in text.splitlines() if line[:1].isdigit()), 15)
+
+    def test_xdmf_describes_the_edges_and_their_lines(self):
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("python3-h5py is not installed")
+        expected = self.expected()
+        with h5py.File(self.converted("a.xdmf").with_suffix(".h5")) as arrays:
+            names = [name.decode() for name in arrays["line_sets/name"]]
+            found = {}
+            for edge, tag in zip(arrays["lines"][:].tolist(), arrays["line_tags"][:]):
+                found.setdefault(names[tag - 1], set()).add(tuple(sorted(edge)))
+        self.assertEqual(found, expected)
+        self.assertIn('<Grid Name="lines"', (self.folder / "a.xdmf").read_text())
 
 
 if __name__ == "__main__":

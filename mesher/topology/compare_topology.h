@@ -3,10 +3,11 @@
 // A region of the mesh matches the region of the image with its label that most of its cells' centroids are
 // in. What differs:
 //   lost       a part of a region of the image, joined by faces, that has no centroid of a cell of its label
-//   joined     a region of the image that matches none, as one that matches another region has centroids in
-//   it spurious   a region of the mesh without a centroid in its label split      a region of the image that
-//   several regions match handles, cavities   a region with another number of them than the only region that
-//   matches it
+//   joined     a region of the image that matches none, as one that matches another has centroids in it
+//   spurious   a region of the mesh without a centroid in its label
+//   split      a region of the image that several regions match
+//   handles    a region with another number of handles than the only region that matches it
+//   cavities   a region with another number of cavities than the only region that matches it
 // Regions of the image are those that follow the mesh at ambiguous places (image_regions.h). A difference
 // that these places can explain is *ambiguous*: two joined regions which such places would join; numbers
 // that differ by no more than there are ambiguous places at the region; a spurious region at an ambiguous

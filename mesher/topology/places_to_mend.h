@@ -3,12 +3,11 @@
 //   lost             the component's voxels
 //   spurious, split  the bounds of the mesh's pieces, except of the largest one
 //   all others       the voxels whose labels in image and mesh differ, and which keep that difference when
-//   the
-//                    image is deformed towards the mesh: voxel by voxel takes the mesh's label at its center,
-//                    if that does not change the topology of the label (simple_voxel.h; "warping", Jain et
-//                    al., CVPR 2010). Without any such voxel, as the difference is smaller than voxels, all
-//                    that differ in the component's bounds; and without these, the component's voxels that
-//                    are beside another label.
+//                    the image is deformed towards the mesh: voxel by voxel takes the mesh's label at its
+//                    center, if that does not change the topology of the label (simple_voxel.h; "warping",
+//                    Jain et al., CVPR 2010). Without any such voxel, as the difference is smaller than
+//                    voxels, all that differ in the component's bounds; and without these, the component's
+//                    voxels that are beside another label.
 #pragma once
 
 #include <cstddef>

@@ -6,17 +6,15 @@
 //               of a point of the image where three of their labels meet. The background is a label, also
 //               beyond the grid. An edge is therefore between the right labels wherever it is near the line
 //               of others.
-//   Rests on    Boxes that hold the lines of the image (lines_of_image.h), of at most 0.046 voxels: half of
-//   such
-//               a box's diagonal is added to b. Labels that are greatest at its corners are taken to meet in
-//               it; between two corners one of them may be thinner than the box. Boxes in which three labels
-//               may be greatest, and are not at corners, are counted; an edge may lie near them, and none
-//               must. Edges are sampled at their ends and at three points between. Distances are lengths in
-//               mm in the world, rounded.
+//   Rests on    Boxes that hold the lines of the image (lines_of_image.h), of at most 0.046 voxels. Half of
+//               the diagonal of such a box is added to b. Labels that are greatest at its corners are taken
+//               to meet in it; between two corners one of them may be thinner than the box. Boxes in which
+//               three labels may be greatest, and are not at corners, are counted; an edge may lie near them,
+//               and none must. Edges are sampled at their ends and at three points between. Distances are
+//               lengths in mm in the world, rounded.
 //   Cost        About 0.1 ms per block of voxels with a line, and (points + edges) log n.
-//   Not proved  That the edges make up whole curves: where a line is missing over less than 0.1 % of all
-//   lines
-//               this is reported, not judged. Edges of the image's box are the claim box's.
+//   Not proved  That the edges make up whole curves. Where a line is missing over less than 0.1 % of all
+//               lines, this is reported, not judged. Edges of the image's box are the claim box's.
 #include <fmt/format.h>
 
 #include <array>
@@ -204,7 +202,6 @@ ClaimResult check_lines(const Mesh& mesh, const Adjacency& adjacency, const Imag
       options.lines_delta_mm ? options.lines_delta_mm : mesh.promised_lines_delta_mm;
   result.reason = lack_of_cell_labels(mesh);
   if (!delta_mm) result.reason = "no distance given (--lines-delta), and the file promises none";
-  if (mesh.part) result.reason = "on ranks this claim is not checked: podm-verify checks it";
   if (!result.reason.empty()) return result;
   const Space space = options.space.value_or(mesh.space);
   const Lines lines(mesh, adjacency, image, space, *delta_mm / 2, num_threads(options.threads));

@@ -22,9 +22,11 @@
 //               and 40 bytes per facet side.
 //   Not proved  That a vertex lies between the labels of its own facets. Where three labels meet, a facet
 //               that passes from one label to a second may have a vertex where the first ends at a third.
-//               Such vertices are counted ("vertices_off_own_labels"), not judged. Nor that a facet is near
-//               the isosurface between its vertices, which the claim fidelity samples. The first statement is
-//               the promise of meshers of the PODM family; a mesh of another mesher need not keep it.
+//               Such vertices are counted ("vertices_off_own_labels"), not judged. Nor that a vertex of a
+//               line lies where all labels of the line meet, which the claim lines judges by a bound of its
+//               own. Nor that a facet is near the isosurface between its vertices, which the claim fidelity
+//               samples. The first statement is the promise of meshers of the PODM family; a mesh of another
+//               mesher need not keep it.
 #include <fmt/format.h>
 
 #include <algorithm>

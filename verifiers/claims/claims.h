@@ -21,7 +21,7 @@ inline const char* lack_of_cell_labels(const Mesh& mesh) {
 // meshes.
 ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
-ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
+ClaimResult check_radius_edge(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 /// `image` null: the claim is not run if bounds near interfaces or a grade are asked for. `sizes` null: there
 /// is no size image.
@@ -36,6 +36,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
                           const Options& options);
 ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                                    const Options& options);
+/// Not on ranks.
 ClaimResult check_lines(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                         const Options& options);
 ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const Image& image,

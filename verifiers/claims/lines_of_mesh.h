@@ -15,7 +15,8 @@ struct LineEdge {
   CellId cell = 0;                     ///< a cell with the edge
 };
 
-/// Returns the line edges of a whole mesh, in ascending order of their vertices.
+/// Collective. Returns the line edges, in ascending order of their vertices. On ranks those at vertices of
+/// the rank's own cells are right.
 std::vector<LineEdge> lines_of_mesh(const Mesh& mesh, const Adjacency& adjacency, int threads);
 
 /// The edges as segments in the world, for NearestTree (claims/check_fidelity_tree.h).

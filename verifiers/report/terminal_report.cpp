@@ -19,8 +19,11 @@ std::string witness_text(const Witness& witness) {
   return text + "\n";
 }
 
+bool is_not_on_ranks(Needs needs) { return needs == Needs::kPromisedImage || needs == Needs::kLines; }
+
 const char* why_left_out(const Claim& claim, const Mesh& mesh) {
   if (mesh.unclaimed.contains(claim.name)) return "the file does not claim it";
+  if (mesh.part && is_not_on_ranks(claim.needs)) return "not on ranks";
   switch (claim.needs) {
     case Needs::kNothing:
       return "needs nothing";

@@ -12,12 +12,12 @@ import subprocess
 import sys
 import tempfile
 
+from line_mutants import OPERATORS
 from medit_mesh import MeditMesh
 from mutants import Mutant, MutantFixture
 from pvtu_mesh import MeshInPieces
-from topology_mutants import OPERATORS
 
-NOT_ON_RANKS = ("topology",)  # claims that podm-verify-mpi refuses
+NOT_ON_RANKS = ("lines", "topology")  # claims that podm-verify-mpi refuses
 
 
 def run(verifier, case, claim, folder):
@@ -53,7 +53,7 @@ def pair_on_ranks(pair, num_ranks):
         return None
     for case in cases:
         case.options = [*case.options, "--in-process", str(num_ranks)]
-    return Mutant(*cases, pair.still_passes)
+    return Mutant(*cases, tuple(claim for claim in pair.still_passes if claim not in NOT_ON_RANKS))
 
 
 def word(is_killed, is_pure):

@@ -115,6 +115,21 @@ class ReportTest(unittest.TestCase):
                     file.unlink()
                 self.assert_same_reports()
 
+    def test_bounds_near_lines(self):
+        for seed in range(6):
+            with self.subTest(seed):
+                MeshInPieces(shaken(cubes_of_two_labels(), np.random.default_rng(seed)), 5).write(self.index)
+                self.assert_same_reports("--lines-delta", "1", "--claims", "radius_edge,boundary_angles")
+
+    def test_lines_are_left_out(self):
+        MeshInPieces(cubes_of_two_labels(), 3).write(self.index)
+        _, report = self.report(ON_RANKS, "--lines-delta", "1", "--in-process", "2")
+        self.assertNotIn("lines", report["claims"])
+        process = subprocess.run([ON_RANKS, self.index, "--claims", "lines", "--lines-delta", "1", *self.options,
+                                  "--in-process", "2"], capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("--claims lines: not on ranks", process.stderr)
+
     def test_unsound_references(self):
         mesh = cubes_of_two_labels()
         mesh.cells[3, 1] = 10 ** 6

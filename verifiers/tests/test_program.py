@@ -16,6 +16,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from inr_image import write_inr
+from line_mutants import around_a_line, promising
 from medit_mesh import kuhn_cubes
 from mutants import REGULAR, tetrahedron
 
@@ -183,6 +184,36 @@ class ProgramTest(unittest.TestCase):
         mesh.write(self.mesh)
         self.assert_exit(self.verify(*claims), 2)
         self.assert_exit(self.verify("--claims", "radius_edge"), 0)  # without the image nothing is smoothed
+
+    def test_bounds_near_lines_are_those_of_a_mesh_that_keeps_lines(self):
+        for promise, options, expected in (([], [], "fail"), ([], ["--lines-delta", 1], "pass"),
+                                           (promising(1.5), [], "pass")):
+            around_a_line(25, promise).write(self.mesh)
+            process = self.verify("--claims", "boundary_angles,radius_edge", *options, "--json", self.report)
+            claims = self.read_report()["claims"]
+            self.assertEqual(claims["boundary_angles"]["verdict"], expected, process.stdout)
+            for claim, items in (("boundary_angles", "facets"), ("radius_edge", "cells")):
+                near = claims[claim]["details"].get("near_lines")
+                self.assertEqual(near is not None and near[items] > 0, expected == "pass", claim)
+                self.assertEqual(f"{items} near lines" in process.stdout, expected == "pass", process.stdout)
+
+    def test_the_lines_of_a_mesh_are_compared_with_those_of_the_image(self):
+        voxels = np.ones((4, 6, 6), dtype=int)
+        voxels[:, :, 3:] = 2
+        voxels[:, 3:, 3:] = 3
+        write_inr(self.folder / "image.inr", voxels, offset=0.5)
+        image = ["--image", self.folder / "image.inr"]
+        mesh = meshed_voxels(voxels, {})
+        for promise, options, expected in (([], [], None), ([], ["--lines-delta", 1], "pass"),
+                                           (promising(1), [], "pass"), (promising(0.2), [], "fail"),
+                                           (promising(0.2), ["--lines-delta", 1], "pass")):
+            mesh.comments = promise
+            mesh.write(self.mesh)
+            process = self.verify(*image, *options, "--json", self.report)
+            report = self.read_report()
+            self.assertEqual(report["claims"].get("lines", {}).get("verdict"), expected, process.stdout)
+            self.assertEqual("lines (needs --image and --lines-delta)" in process.stdout, expected is None)
+            self.assertEqual(report["mesh"]["promised_lines_delta_mm"] is not None, promise != [])
 
     def test_sizes_near_interfaces_and_grades_are_those_of_the_labels_selected(self):
         voxels = np.ones((4, 4, 12), dtype=np.uint8)

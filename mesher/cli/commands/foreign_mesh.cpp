@@ -14,6 +14,7 @@
 #include "errors.h"
 #include "geometry/predicates.h"
 #include "io/labelled_facets.h"
+#include "io/lines_of_facets.h"
 #include "mesh.h"
 #include "podm/errors.h"
 #include "readers/read_mesh.h"
@@ -59,6 +60,11 @@ class MeshBuilder {
     mesh_.cells = std::move(file_.cells);
     orient_cells();
     find_facets();
+    if (const auto delta_mm = file_.promised_lines_delta_mm) {
+      find_lines(mesh_, *delta_mm);
+      mesh_.lines.are_claimed = !file_.unclaimed.contains("lines");
+      file_.other_cells.erase("lines");
+    }
     for (const auto& [kind, count] : file_.other_cells) warn(count, kind + " in the file");
     return std::move(foreign_);
   }

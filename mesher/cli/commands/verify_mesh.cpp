@@ -87,6 +87,7 @@ Judging judging_of(const MeshRun& run) {
   if (is_delaunay) judging.claims.push_back("delaunay");
   if (run.report.promised_dihedral_deg) judging.claims.push_back("dihedral");  // the file has the bounds
   if (run.report.topology) judging.claims.push_back("topology");
+  if (run.report.lines && run.report.lines->is_claimed()) judging.claims.push_back("lines");
   const std::vector<std::string> sizes = size_options(run);
   if (!sizes.empty()) judging.claims.push_back("size");
   if (run.command.verify_fidelity) judging.claims.push_back("fidelity");

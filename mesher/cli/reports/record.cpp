@@ -138,8 +138,9 @@ Json outcomes_of(const Counters& counters) {
 Json counters_of(const MeshingReport& report) {
   const Counters& counters = report.counters;
   Json insertions = Json::object();
-  for (std::size_t rule = 0; rule < counters.insertions_by_rule.size(); ++rule)
-    insertions[fmt::format("R{}", rule + 1)] = counters.insertions_by_rule[rule];
+  constexpr std::array kRules{"R1", "R2", "R3", "R4", "R5", "R0"};
+  for (std::size_t rule = 0; rule < kRules.size() - !report.lines; ++rule)
+    insertions[kRules[rule]] = counters.insertions_by_rule[rule];
   Json counts = {{"insertions", insertions}};
   add_counts(counters, Count::kWork, counts);
   counts["store_cells"] = report.store_cells;
@@ -253,6 +254,47 @@ Json thin_layers_of(const MeshingReport& report) {
           {"least_delta_mm", of.least_delta_mm}, {"thin_voxels", of.thin_voxels}};
 }
 
+Json label_values(const std::vector<Label>& labels) {
+  Json values = Json::array();
+  for (const Label& label : labels) values.push_back(label.value);
+  return values;
+}
+
+Json lines_of(const MeshingReport& report) {
+  if (!report.lines) return nullptr;
+  const LinesReport& of = *report.lines;
+  Json undecided = Json::array(), left_out = Json::array();
+  for (const LinesReport::Undecided& each : of.undecided)
+    undecided.push_back({{"reason", each.reason}, {"voxel", each.voxel}, {"ras_mm", each.ras_mm}});
+  for (const LinesReport::LeftOut& each : of.left_out)
+    left_out.push_back({{"reason", each.reason},
+                        {"labels", label_values(each.labels)},
+                        {"length_mm", each.length_mm},
+                        {"ras_mm", each.ras_mm}});
+  return {{"delta_mm", of.delta_mm},
+          {"floor_mm", of.floor_mm},
+          {"arcs", of.arcs},
+          {"nodes", of.nodes},
+          {"traced_mm", of.traced_mm},
+          {"kept_mm", of.kept_mm},
+          {"excluded_mm", of.excluded_mm},
+          {"untraced_mm", of.untraced_mm},
+          {"share_kept", of.share_kept()},
+          {"stray_mm", of.stray_mm},
+          {"is_claimed", of.is_claimed()},
+          {"edges", of.edges},
+          {"splits", of.splits},
+          {"inexact_vertices", of.inexact_vertices},
+          {"near_lines",
+           {{"cells", of.cells_near},
+            {"facets", of.facets_near},
+            {"max_radius_edge", or_null(of.max_radius_edge_near)},
+            {"min_facet_angle_deg", or_null(of.min_facet_angle_near_deg)},
+            {"min_facet_angle_away_deg", or_null(of.min_facet_angle_away_deg)}}},
+          {"undecided", undecided},
+          {"left_out", left_out}};
+}
+
 // The inputs that podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
 Json verify_of(const MeshRun& run) {
   if (run.mesh.cells == 0) return nullptr;
@@ -266,6 +308,7 @@ Json promises_of(const MeshingReport& report) {
                  "surface",   "labels",      "surface_vertices", "fidelity"};
   if (report.promised_dihedral_deg) claims.push_back("dihedral");
   if (report.topology) claims.push_back("topology");
+  if (report.lines && report.lines->is_claimed()) claims.push_back("lines");
   return claims;
 }
 
@@ -357,6 +400,7 @@ Json record(const MeshRun& run) {
       {"smoothing", or_null(report.smoothing)},
       {"optimization", optimization_of(report)},
       {"thin_layers", thin_layers_of(report)},
+      {"lines", lines_of(report)},
       {"promised_dihedral_deg", or_null(report.promised_dihedral_deg)},
       {"guarantees", report.guarantees},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},

@@ -47,15 +47,16 @@ std::string facets_text(const MeshRun& run) {
   return text + more(counts.size(), "pairs");
 }
 
-std::string quality_text(const Quality& quality) {
+std::string quality_text(const MeshingReport& report) {
+  const Quality& quality = report.quality;
   return fmt::format(
       "quality    radius-edge ratio up to {:.4g} (bound {}), boundary facet angles {:.4g} to {:.4g} deg"
-      " (bound {}),\n"
+      " (bound {}{}),\n"
       "           dihedral angles {:.4g} to {:.4g} deg, circumradius up to {:.4g} mm, shortest edge {:.4g} "
       "mm\n",
       quality.max_radius_edge, kRadiusEdgeBound, quality.min_facet_angle_deg, quality.max_facet_angle_deg,
-      kFacetAngleBound, quality.min_dihedral_deg, quality.max_dihedral_deg, quality.max_radius_mm,
-      quality.shortest_edge_mm);
+      kFacetAngleBound, report.lines ? fmt::format(", near lines {}", kFacetAngleBoundNearLines) : "",
+      quality.min_dihedral_deg, quality.max_dihedral_deg, quality.max_radius_mm, quality.shortest_edge_mm);
 }
 
 std::string perturbation_text(const MeshingReport& report) {
@@ -137,6 +138,41 @@ std::string topology_text(const MeshingReport& report) {
   return text;
 }
 
+// Leaves out what is not there: a mesh may lack facets near lines, or away from them.
+std::string near_lines_text(const LinesReport& of) {
+  if (!of.min_facet_angle_near_deg || !of.max_radius_edge_near) return "";
+  const std::string elsewhere =
+      of.min_facet_angle_away_deg ? fmt::format(" (elsewhere {:.2f})", *of.min_facet_angle_away_deg) : "";
+  return fmt::format(
+      "           near them {} facets, least angle {:.2f} deg{}, and {} cells, largest ratio {:.3f}\n",
+      of.facets_near, *of.min_facet_angle_near_deg, elsewhere, of.cells_near, *of.max_radius_edge_near);
+}
+
+std::string lines_text(const MeshingReport& report) {
+  if (!report.lines) return "";
+  const LinesReport& of = *report.lines;
+  std::string text =
+      fmt::format("lines      {} edges, {:.6g} of {:.6g} mm ({:.3f} %), sampled at {:.4g} mm; {} splits\n",
+                  of.edges, of.kept_mm, of.traced_mm, 100 * of.share_kept(), of.delta_mm, of.splits);
+  text += near_lines_text(of);
+  if (of.inexact_vertices > 0)
+    text += fmt::format("           {} vertices lie beside a line: its place was not found\n",
+                        of.inexact_vertices);
+  if (!of.left_out.empty())
+    text += fmt::format(
+        "           {} stretches left out, {:.4g} mm of them too small or too near another line\n",
+        of.left_out.size(), of.excluded_mm);
+  if (of.stray_mm > 0)
+    text += fmt::format("           {:.4g} mm more of edges where three labels meet only in the mesh\n",
+                        of.stray_mm);
+  if (of.untraced_mm > 0)
+    text += fmt::format("           about {:.4g} mm more may be too fine to be traced\n", of.untraced_mm);
+  if (!of.is_claimed()) text += "           the file does not claim the lines\n";
+  if (!of.undecided.empty())
+    text += fmt::format("           {} undecided places: the record lists them\n", of.undecided.size());
+  return text;
+}
+
 std::string smoothing_text(const MeshRun& run) {
   if (!run.report.smoothing) return "";
   const SmoothingReport& done = *run.report.smoothing;
@@ -180,8 +216,8 @@ std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
   for (const char* phase :
-       {"read", "draw", "transform", "allocate", "initial", "octree", "refine", "exchange", "closing", "mend",
-        "perturb", "optimize", "extract", "measure", "write"})
+       {"read", "draw", "trace", "transform", "allocate", "lines", "initial", "octree", "refine", "exchange",
+        "closing", "mend", "perturb", "optimize", "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +
@@ -199,8 +235,8 @@ std::string summary(const MeshRun& run) {
   std::string text =
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
-  text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report.quality) +
-          perturbation_text(report) + optimization_text(report) + topology_text(report);
+  text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report) +
+          perturbation_text(report) + optimization_text(report) + topology_text(report) + lines_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -9,6 +9,9 @@ namespace podm {
 inline constexpr double kRadiusEdgeBound = 1.93;
 /// Lower bound on every planar angle of every boundary facet, degrees; the angle exceeds it.
 inline constexpr double kFacetAngleBound = 30.0;
+/// The same near lines, for facets with a vertex on a line: the angle whose sine is 1 / sqrt(8), rounded
+/// down.
+inline constexpr double kFacetAngleBoundNearLines = 20.7;
 /// Largest least dihedral angle that an option may request, degrees. A regular cell has dihedral angles of
 /// 70.5 degrees.
 inline constexpr double kMostMinDihedral = 60.0;

@@ -28,7 +28,7 @@ struct HopsByKind {
 
 /// Exact counts of operations by outcome and of work done, and the time lost.
 struct Counters {
-  std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
+  std::array<std::uint64_t, 6> insertions_by_rule{};  ///< R1..R5, R0
   std::uint64_t removals = 0;                         ///< vertices removed by R6
   /// Insertions given up: a vertex was nearer than the spacing floor, or a circumcenter was outside its
   /// cell's ball. Points of R1 and R3 that were refused during planning are not counted.

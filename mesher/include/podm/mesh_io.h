@@ -16,7 +16,8 @@ namespace podm {
 /// Puts the mesh into its canonical order. Two runs that made the same mesh then agree byte by byte. Vertices
 /// are sorted by (x, y, z), and -0 becomes 0. Each cell is permuted evenly and each facet is rotated to start
 /// at its smallest vertex. The other three vertices of a cell ascend; the last two are swapped where
-/// orientation requires it. Cells and facets are sorted by their vertices. Takes about 26 bytes per cell in
+/// orientation requires it. Cells, facets and edges of lines are sorted by their vertices, lines by their
+/// labels. Takes about 26 bytes per cell in
 /// addition to the mesh. `threads`: 0 for all cores; the order is the same for any number.
 void canonicalize(TetMesh& mesh, int threads = 0);
 
@@ -27,7 +28,7 @@ void canonicalize(TetMesh& mesh, int threads = 0);
 ///   uint32   label value of every cell
 ///   uint32   three vertices of every facet
 ///   uint32   two label values of every facet, in the order of TetMesh::facet_labels
-/// Label names and the space are not hashed.
+/// Label names, lines and the space are not hashed.
 std::string mesh_sha256(const TetMesh& mesh);
 
 /// Returns a hash that does not depend on the order of cells and facets. Hashes of the pieces of a
@@ -57,12 +58,14 @@ bool is_surface_path(const std::string& path);     ///< true for these
 
 /// Writes the mesh in the format of the extension. Field data, comments or information records hold
 /// promises_of() and the space. Returns a sentence for each property of the mesh that the file cannot hold
-/// exactly. Throws InputError that names the file and the fault; in that case nothing is written and existing
-/// files stay untouched.
+/// exactly, and for <stem>_lines.vtu if another mesh left it beside one without lines. Throws InputError that
+/// names the file and the fault; in that case nothing is written and existing files stay untouched.
 ///   .vtu   the cells, with the cell array `label` (label values), and in <stem>_facets.vtu beside it the
 ///          facets, with the cell arrays `label_a`, `label_b` (facet_labels as values, the background's for
 ///          outside; the normal points from b to a) and the point array `vertex` (position among all
-///          vertices). Field data of both: arrays "space:RAS" and "label:liver", which holds the value.
+///          vertices). If lines were asked for, <stem>_lines.vtu has their edges, with the cell array `line`,
+///          the point array `vertex` and field data "line:liver|kidney|outside", which holds the line. Field
+///          data of all: arrays "space:RAS" and "label:liver", which holds the value.
 ///   .vtk   the same as two files of legacy VTK; array names are percent-encoded as VTK does.
 ///   .mesh  a tetrahedron's reference is its label value; a triangle's numbers the unordered label pair.
 ///          Comments give the labels and the pairs. Coordinates read back to the same doubles, as in all text

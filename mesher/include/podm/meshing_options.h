@@ -23,6 +23,11 @@ inline constexpr int kMostThreads = 1024;
 inline constexpr const char* kThinNotOnRanks =
     "the topologies of image and mesh are compared on a whole mesh";
 
+inline constexpr const char* kLinesNotOnRanks =
+    "vertices of a line are sampled before refinement, in one store";
+/// The default sampling distance of lines over that of surfaces.
+inline constexpr double kLinesDelta = 1.25;
+
 /// A bound on the cells whose circumcenter is within a width of the interface between two sets of labels. The
 /// interface here consists of the faces between their voxels. Labels are given by value; the background has
 /// its own value.
@@ -225,8 +230,34 @@ struct OptimizeOptions {
   }
 };
 
+/// Lines where three or more labels meet.
+struct LinesOptions {
+  bool are_kept = false;  ///< lines become edges of the mesh
+  double delta_mm = 0;    ///< their largest sampling distance, mm; 0: kLinesDelta times that of surfaces
+
+  static constexpr auto options() {
+    using L = LinesOptions;
+    using enum OptionGroup;
+    return std::tuple{
+        option(
+            &L::are_kept, "lines", "", kSurfaces,
+            "make edges of the lines where three or more labels meet; facets with a vertex on\n"
+            "a line have angles above 20.7 degrees, all others above 30; not with --thin keep\n"
+            "or --optimize",
+            {.unset = "edges cross these lines", .uses = kInAll | kInPlan, .not_on_ranks = kLinesNotOnRanks}),
+        option(&L::delta_mm, "lines-delta", "MM", kSurfaces, "sampling distance of the lines, mm",
+               {.unset = "1.25 times that of the surfaces",
+                .record = "lines_delta_mm",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = kLinesNotOnRanks,
+                .quantity = "length in mm",
+                .needs = "lines"})};
+  }
+};
+
 struct MeshingOptions {
   SizeOptions sizes = {};
+  LinesOptions lines = {};
   /// Degrees. If positive, vertices move at the end of the run, to reduce the number of cells with a dihedral
   /// angle below it or above max_dihedral_deg() of it (rule R7). All guarantees are kept. The angle itself is
   /// not guaranteed: the report counts the remaining cells; if there is none, the file promises the angle.
@@ -258,6 +289,7 @@ struct MeshingOptions {
                "auto: podm, or podm-home on threads pinned to several NUMA nodes",
                {.uses = kInAll | kInPlan}),
         nested(&M::sizes),
+        nested(&M::lines),
         nested(&M::team),
         nested(&M::leaves),
         option(&M::crossover, "crossover", "N", kAlgorithm,

@@ -11,6 +11,7 @@
 #include "podm/bounds.h"
 #include "podm/choices.h"
 #include "podm/counters.h"
+#include "podm/lines_report.h"
 #include "podm/perturbation_report.h"
 #include "podm/topology_report.h"
 
@@ -18,8 +19,10 @@ namespace podm {
 
 /// Counts of cells and boundary facets that miss a guarantee. All are zero when StopReason is kComplete.
 struct Guarantees {
-  std::uint64_t radius_edge = 0;     ///< cells with radius-edge >= kRadiusEdgeBound
-  std::uint64_t facet_angle = 0;     ///< boundary facets with an angle <= kFacetAngleBound
+  std::uint64_t radius_edge = 0;  ///< cells with radius-edge >= kRadiusEdgeBound
+  /// Boundary facets with an angle <= kFacetAngleBound; near lines, <= asin(1/sqrt(8)), which exceeds
+  /// kFacetAngleBoundNearLines.
+  std::uint64_t facet_angle = 0;
   std::uint64_t radius = 0;          ///< cells with circumradius > r_t
   std::uint64_t facet_vertices = 0;  ///< boundary facets with a vertex off the isosurface
   /// Cells that became flat or inverted when coordinates were rounded for output.
@@ -128,7 +131,8 @@ struct SmoothingReport {
 };
 
 struct MeshingReport {
-  /// Seconds per phase of the returned mesh. "smooth" if smoothing was requested; "transform"; "allocate":
+  /// Seconds per phase of the returned mesh. "smooth" if smoothing was requested; "trace" and
+  /// "lines" if lines are kept: they are traced, and sampled and mended; "transform"; "allocate":
   /// store, pools, workers and threads; "initial", "octree", "refine", "closing" (kPodm and kPodmHome have
   /// only "refine"); "mend" if thin layers are kept; "perturb" if R7 was requested; "optimize"; "extract";
   /// "measure": quality and guarantees. "calibrate" is the whole search for the radius of a target.
@@ -171,6 +175,7 @@ struct MeshingReport {
   };
   std::optional<SimulatedMachine> simulated_machine;
   std::optional<TopologyReport> topology;          ///< set if thin layers are kept
+  std::optional<LinesReport> lines;                ///< set if lines are kept
   std::optional<PerturbationReport> perturbation;  ///< set if R7 was requested and reached
   std::vector<std::string> warnings;
 };

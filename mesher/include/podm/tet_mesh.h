@@ -8,6 +8,7 @@
 
 #include "podm/choices.h"
 #include "podm/label_image.h"
+#include "podm/mesh_lines.h"
 #include "podm/topology_report.h"
 
 namespace podm {
@@ -31,6 +32,7 @@ struct TetMesh {
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
   /// If thin layers were kept, all differences of topology from the image that are left.
   std::optional<std::vector<TopologyReport::Difference>> topology_differences = {};
+  MeshLines lines = {};
 };
 
 }  // namespace podm

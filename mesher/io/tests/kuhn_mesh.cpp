@@ -1,8 +1,10 @@
 #include "io/tests/kuhn_mesh.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "geometry/tetrahedron.h"
 
@@ -129,6 +131,26 @@ TetMesh make_test_mesh(int n, std::uint64_t seed) {
   });
 }
 
+// All labels around an edge are on the sides of the facets around it.
+void add_lines(TetMesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, std::set<LabelIndex>> labels_around;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [first, second] = std::minmax(mesh.facets[f][i], mesh.facets[f][(i + 1) % 3]);
+      labels_around[{first, second}].insert(mesh.facet_labels[f].begin(), mesh.facet_labels[f].end());
+    }
+  }
+  mesh.lines.delta_mm = 1;
+  std::map<std::set<LabelIndex>, std::uint32_t> lines;
+  for (const auto& [edge, labels] : labels_around) {
+    if (labels.size() < 3) continue;
+    const auto [line, is_new] = lines.emplace(labels, static_cast<std::uint32_t>(lines.size()));
+    if (is_new) mesh.lines.labels_of_line.emplace_back(labels.begin(), labels.end());
+    mesh.lines.edges.push_back(edge);
+    mesh.lines.line_of_edge.push_back(line->second);
+  }
+}
+
 TetMesh shuffled(const TetMesh& mesh, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   TetMesh result = mesh;
@@ -153,6 +175,13 @@ TetMesh shuffled(const TetMesh& mesh, std::uint64_t seed) {
   for (auto& facet : result.facets) {
     for (auto& vertex : facet) vertex = new_vertex[vertex];
     std::rotate(facet.begin(), facet.begin() + random() % 3, facet.end());
+  }
+  const auto old_edge = random_order(mesh.lines.edges.size(), random);
+  result.lines.edges = reordered(mesh.lines.edges, old_edge);
+  result.lines.line_of_edge = reordered(mesh.lines.line_of_edge, old_edge);
+  for (auto& edge : result.lines.edges) {
+    const auto [first, second] = std::minmax(new_vertex[edge[0]], new_vertex[edge[1]]);
+    edge = {first, second};
   }
   return result;
 }
@@ -181,7 +210,13 @@ bool same_mesh(const TetMesh& a, const TetMesh& b) {
   const auto same_pair = [&](const auto& x, const auto& y) {
     return same_label(x[0], y[0]) && same_label(x[1], y[1]);
   };
-  return a.vertices == b.vertices && a.cells == b.cells && a.facets == b.facets && a.space == b.space &&
+  const auto same_line = [&](const auto& x, const auto& y) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), same_label);
+  };
+  const auto &lines = a.lines.labels_of_line, &other_lines = b.lines.labels_of_line;
+  return a.lines.edges == b.lines.edges && a.lines.line_of_edge == b.lines.line_of_edge &&
+         std::equal(lines.begin(), lines.end(), other_lines.begin(), other_lines.end(), same_line) &&
+         a.vertices == b.vertices && a.cells == b.cells && a.facets == b.facets && a.space == b.space &&
          std::equal(a.cell_labels.begin(), a.cell_labels.end(), b.cell_labels.begin(), b.cell_labels.end(),
                     same_label) &&
          std::equal(a.facet_labels.begin(), a.facet_labels.end(), b.facet_labels.begin(),

@@ -17,6 +17,9 @@ TetMesh make_kuhn_mesh(int n, std::uint64_t seed, const std::function<LabelIndex
 /// Returns two labels side by side, a third inside them, and an empty corner.
 TetMesh make_test_mesh(int n = 5, std::uint64_t seed = 1);
 
+/// Adds the edges around which three or more labels meet as lines.
+void add_lines(TetMesh& mesh);
+
 /// Returns the same mesh in another order: vertices renumbered, cells and facets shuffled, the vertices of
 /// each permuted evenly.
 TetMesh shuffled(const TetMesh& mesh, std::uint64_t seed);
@@ -27,8 +30,8 @@ double six_volumes(const std::array<double, 3>& a, const std::array<double, 3>& 
 /// Returns the volume of the cells of one label.
 double volume_of_label(const TetMesh& mesh, LabelIndex label);
 
-/// Returns true if both have the same vertices, cells, labels by value, facets and pairs by value, in the
-/// same order.
+/// Returns true if both have the same vertices, cells, labels by value, facets and pairs by value, lines by
+/// the values of their labels, in the same order.
 bool same_mesh(const TetMesh& a, const TetMesh& b);
 
 }  // namespace podm

@@ -1,5 +1,6 @@
 #include "io/tests/mesh_readers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -56,11 +57,29 @@ std::string rest_of(std::istringstream& words) {
   return rest;
 }
 
+LabelIndex label_named(const std::string& name, const std::vector<Label>& labels) {
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i].name == name) return static_cast<LabelIndex>(i);
+  require(name == "outside", "no label " + name);
+  return kBackground;
+}
+
+// Reads "liver|kidney|outside".
+std::vector<LabelIndex> labels_of_line(const std::string& name, const std::vector<Label>& labels) {
+  std::vector<LabelIndex> read;
+  std::istringstream parts(name);
+  for (std::string part; std::getline(parts, part, '|');) read.push_back(label_named(part, labels));
+  require(read.size() >= 3, "a line of fewer than three labels");
+  std::sort(read.begin(), read.end());
+  return read;
+}
+
 class MeditReader {
  public:
   explicit MeditReader(const std::string& path) : file_(path) {
     while (next_line()) {
       if (line_ == "Vertices") read_vertices();
+      if (line_ == "Edges") read_edges();
       if (line_ == "Triangles") read_triangles();
       if (line_ == "Tetrahedra") read_tetrahedra();
     }
@@ -83,6 +102,7 @@ class MeditReader {
       if (kind == "space" && words >> space) mesh_.space = space_of(space);
       if (kind == "label") read_label(words);
       if (kind == "pair") read_pair(words);
+      if (kind == "line") read_line(words);
     }
     return false;
   }
@@ -104,6 +124,12 @@ class MeditReader {
                                   (pairs_.back()[0] == 0 ? "outside" : mesh_.labels[pairs_.back()[0]].name),
             "wrong pair name");
   }
+  void read_line(std::istringstream& words) {
+    std::size_t reference;
+    words >> reference;
+    require(reference == mesh_.lines.labels_of_line.size() + 1, "lines out of order");
+    mesh_.lines.labels_of_line.push_back(labels_of_line(rest_of(words), mesh_.labels));
+  }
   std::size_t read_count() {
     require(next_line(), "no count");
     return std::stoul(line_);
@@ -118,6 +144,15 @@ class MeditReader {
       std::array<std::string, 3> text;  // the standard library's stream extraction may round; strtod does not
       words >> text[0] >> text[1] >> text[2];
       mesh_.vertices.push_back({std::stod(text[0]), std::stod(text[1]), std::stod(text[2])});
+    }
+  }
+  void read_edges() {
+    for (std::size_t n = read_count(); n > 0; --n) {
+      std::istringstream words = item();
+      std::uint32_t a, b, reference;
+      require(static_cast<bool>(words >> a >> b >> reference), "bad edge");
+      mesh_.lines.edges.push_back({a - 1, b - 1});
+      mesh_.lines.line_of_edge.push_back(reference - 1);
     }
   }
   void read_triangles() {
@@ -182,11 +217,6 @@ class GmshReader {
       result_.mesh.labels.push_back(label);
     }
   }
-  LabelIndex label_named(const std::string& name) const {
-    for (std::size_t i = 0; i < result_.mesh.labels.size(); ++i)
-      if (result_.mesh.labels[i].name == name) return static_cast<LabelIndex>(i);
-    throw std::runtime_error("no label " + name);
-  }
   void read_physical_names() {
     bytes_.expect_line("$PhysicalNames");
     for (int n = std::stoi(bytes_.line()); n > 0; --n) {
@@ -196,19 +226,32 @@ class GmshReader {
       std::string name = rest_of(words);
       require(name.front() == '"' && name.back() == '"', "name without quotes");
       name = name.substr(1, name.size() - 2);
-      if (dimension == 2) {
+      const std::vector<Label>& labels = result_.mesh.labels;
+      if (dimension == 1) {
+        auto& lines = result_.mesh.lines.labels_of_line;
+        lines.push_back(labels_of_line(name, labels));
+        require(tag == static_cast<int>(lines.size()), "lines out of order");
+      } else if (dimension == 2) {
         const std::size_t bar = name.find('|');
-        pair_of_physical_[tag] = {label_named(name.substr(bar + 1)), label_named(name.substr(0, bar))};
+        pair_of_physical_[tag] = {label_named(name.substr(bar + 1), labels),
+                                  label_named(name.substr(0, bar), labels)};
       } else {
-        require(label_of_physical_.at(tag) == label_named(name), "a volume's name and tag disagree");
+        require(label_of_physical_.at(tag) == label_named(name, labels), "a volume's name and tag disagree");
       }
     }
     bytes_.expect_line("$EndPhysicalNames");
   }
   void read_entities() {
     bytes_.expect_line("$Entities");
-    require(bytes_.take<std::uint64_t>() == 0 && bytes_.take<std::uint64_t>() == 0, "points or curves");
+    require(bytes_.take<std::uint64_t>() == 0, "points");
+    const auto num_curves = bytes_.take<std::uint64_t>();
+    require(num_curves == result_.mesh.lines.labels_of_line.size(), "curves");
     const auto num_surfaces = bytes_.take<std::uint64_t>(), num_volumes = bytes_.take<std::uint64_t>();
+    for (std::uint64_t n = 0; n < num_curves; ++n) {
+      const auto [tag, physical] = read_entity_head();
+      require(tag == static_cast<int>(n + 1) && physical == tag, "tag of a curve");
+      require(bytes_.take<std::uint64_t>() == 0, "points around a curve");
+    }
     for (std::uint64_t n = 0; n < num_surfaces; ++n) {
       const auto [tag, physical] = read_entity_head();
       pair_of_entity_[tag] = pair_of_physical_.at(physical);
@@ -242,8 +285,7 @@ class GmshReader {
     std::vector<int> seen(num_nodes);
     for (std::uint64_t block = 0; block < num_blocks; ++block) {
       const auto [dimension, entity, parametric] = bytes_.take<std::array<std::int32_t, 3>>();
-      require(dimension == 2 ? pair_of_entity_.count(entity) : label_of_entity_.count(entity),
-              "no such entity");
+      require(has_entity(dimension, entity), "no such entity");
       require(parametric == 0, "parametric nodes");
       std::vector<std::uint64_t> tags(bytes_.take<std::uint64_t>());
       for (auto& tag : tags) tag = bytes_.take<std::uint64_t>();
@@ -255,18 +297,27 @@ class GmshReader {
     bytes_.expect_line("");
     bytes_.expect_line("$EndNodes");
   }
+  bool has_entity(std::int32_t dimension, std::int32_t entity) const {
+    if (dimension == 1)
+      return entity >= 1 && static_cast<std::size_t>(entity) <= result_.mesh.lines.labels_of_line.size();
+    return dimension == 2 ? pair_of_entity_.contains(entity) : label_of_entity_.contains(entity);
+  }
   void read_elements() {
     bytes_.expect_line("$Elements");
     const auto [num_blocks, num_elements, min_tag, max_tag] = bytes_.take<std::array<std::uint64_t, 4>>();
     require(min_tag == 1 && max_tag == num_elements, "element tags");
     std::map<std::uint64_t, std::pair<std::array<std::uint32_t, 3>, std::array<LabelIndex, 2>>> facets;
     std::map<std::uint64_t, std::pair<std::array<std::uint32_t, 4>, LabelIndex>> cells;
+    std::map<std::uint64_t, std::pair<std::array<std::uint32_t, 2>, std::uint32_t>> edges;
     for (std::uint64_t block = 0; block < num_blocks; ++block) {
       const auto [dimension, entity, type] = bytes_.take<std::array<std::int32_t, 3>>();
-      require((dimension == 2 && type == 2) || (dimension == 3 && type == 4), "element type");
+      require((dimension == 1 && type == 1) || (dimension == 2 && type == 2) || (dimension == 3 && type == 4),
+              "element type");
       for (auto n = bytes_.take<std::uint64_t>(); n > 0; --n) {
         const auto tag = bytes_.take<std::uint64_t>();
-        if (type == 2)
+        if (type == 1)
+          edges[tag] = {take_vertices<2>(), static_cast<std::uint32_t>(entity - 1)};
+        else if (type == 2)
           facets[tag] = {take_vertices<3>(), pair_of_entity_.at(entity)};
         else
           cells[tag] = {take_vertices<4>(), label_of_entity_.at(entity)};
@@ -274,7 +325,11 @@ class GmshReader {
     }
     bytes_.expect_line("");
     bytes_.expect_line("$EndElements");
-    require(facets.size() + cells.size() == num_elements, "element count");
+    require(facets.size() + cells.size() + edges.size() == num_elements, "element count");
+    for (const auto& [tag, edge] : edges) {
+      result_.mesh.lines.edges.push_back(edge.first);
+      result_.mesh.lines.line_of_edge.push_back(edge.second);
+    }
     for (const auto& [tag, facet] : facets) {
       result_.mesh.facets.push_back(facet.first);
       result_.mesh.facet_labels.push_back(facet.second);

@@ -30,6 +30,7 @@ class EverySpace : public testing::TestWithParam<Space> {
  protected:
   TetMesh make_mesh() const {
     TetMesh mesh = make_test_mesh();
+    add_lines(mesh);
     mesh.space = GetParam();
     canonicalize(mesh);
     return mesh;
@@ -115,15 +116,17 @@ TEST(MeshFiles, LabelNamesAreMadePrintableAndDistinct) {
 
 TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {
   const ScratchFolder folder;
-  TetMesh mesh = make_test_mesh(), other = shuffled(mesh, 11);
+  TetMesh mesh = make_test_mesh();
+  add_lines(mesh);
+  TetMesh other = shuffled(mesh, 11);
   canonicalize(mesh);
   canonicalize(other);
   for (const char* extension : {".vtu", ".vtk", ".mesh", ".msh", ".xdmf", ".inp", ".e", ".ele"}) {
     write_mesh(mesh, folder / (std::string("a") + extension));
     write_mesh(other, folder / (std::string("b") + extension));
   }
-  for (const char* ending : {".vtu", "_facets.vtu", ".vtk", "_facets.vtk", ".mesh", ".msh", ".h5", ".inp",
-                             ".e", ".node", ".ele", ".face"})
+  for (const char* ending : {".vtu", "_facets.vtu", "_lines.vtu", ".vtk", "_facets.vtk", ".mesh", ".msh",
+                             ".h5", ".inp", ".e", ".node", ".ele", ".face"})
     EXPECT_EQ(read_bytes(folder / (std::string("a") + ending)),
               read_bytes(folder / (std::string("b") + ending)))
         << ending;
@@ -192,6 +195,32 @@ TEST(CheckPath, AVersionOfGmshIsForItsFilesAlone) {
   const MeshFileOptions options{GmshVersion::k2_2};
   EXPECT_NO_THROW(check_mesh_path(folder / "a.msh", options));
   EXPECT_THROW(check_mesh_path(folder / "a.vtu", options), InputError);
+}
+
+// The formats that hold lines are those that the guide of lines names.
+TEST(MeshFiles, AFormatThatHoldsNoLinesReportsTheirLoss) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh();
+  for (const bool has_lines : {false, true}) {
+    if (has_lines) add_lines(mesh);
+    for (const char* name : {"a.vtk", "a.node", "a.ele"}) {
+      const std::vector<std::string> losses = write_mesh(mesh, folder / name);
+      ASSERT_EQ(losses.size(), has_lines ? 1u : 0u) << name;
+      for (const std::string& loss : losses) EXPECT_NE(loss.find("lines"), std::string::npos) << loss;
+    }
+  }
+}
+
+TEST(MeshFiles, AVtuFileReportsTheLinesOfAnotherMeshBesideIt) {
+  const ScratchFolder folder;
+  const TetMesh mesh = make_test_mesh();
+  TetMesh with_lines = mesh;
+  add_lines(with_lines);
+  EXPECT_TRUE(write_mesh(mesh, folder / "a.vtu").empty());
+  EXPECT_TRUE(write_mesh(with_lines, folder / "a.vtu").empty());
+  EXPECT_EQ(write_mesh(mesh, folder / "a.vtu"),
+            std::vector<std::string>{"a_lines.vtu beside it is of another mesh"});
+  EXPECT_TRUE(write_mesh(with_lines, folder / "a.vtu").empty());
 }
 
 // Names of Abaqus sets consist of letters, digits, '_' and '-', have at most 80 characters, and ignore case.

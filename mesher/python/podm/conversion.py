@@ -44,6 +44,15 @@ def facets_to_vtk(mesh: Mesh) -> vtk.vtkPolyData:
     return surface
 
 
+def lines_to_vtk(mesh: Mesh) -> vtk.vtkPolyData:
+    vtk = _package("vtk")
+    lines = vtk.vtkPolyData()
+    lines.SetLines(_cell_array(vtk, mesh.lines))
+    _add_points_and_names(vtk, mesh, lines)
+    lines.GetCellData().AddArray(_array("line", mesh.line_of_edge))
+    return lines
+
+
 def _package(name: str) -> Any:
     try:
         return importlib.import_module(name)
@@ -63,7 +72,7 @@ def _array(name: str, values: npt.NDArray[Any]) -> Any:
 
 
 def _cell_array(vtk: Any, vertices: npt.NDArray[np.uint32]) -> Any:
-    """Returns a copy of the vertices of each cell or facet: VTK 9.1 keeps no other cells alive."""
+    """Returns a copy of the vertices of each cell, facet or edge: VTK 9.1 keeps no other cells alive."""
     from vtk.util.numpy_support import numpy_to_vtk
     offsets = np.arange(0, vertices.size + 1, vertices.shape[1], dtype=np.int32)
     cells = vtk.vtkCellArray()

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 class Mesh:
     """A tetrahedral mesh with labels.
 
-    Its arrays are read-only. `points`, `cells` and `facets` are views of the mesher's memory and keep it alive;
-    `labels` and `facet_labels` are made once, at the first access. Points, cells and facets are in the canonical order
-    of the program, so that the same mesh has the same arrays.
+    Its arrays are read-only. `points`, `cells`, `facets` and `lines` are views of the mesher's memory and keep it
+    alive; `labels` and `facet_labels` are made once, at the first access. Points, cells and facets are in the canonical
+    order of the program, so that the same mesh has the same arrays.
     """
 
     def __init__(self, made: _podm.MeshInMemory) -> None:
@@ -62,6 +62,27 @@ class Mesh:
 
         The first is the background's where the outside is on that side."""
         return self._values_of(self._made.labels_of_facet)
+
+    @property
+    def lines(self) -> npt.NDArray[np.uint32]:
+        """The two vertices of each edge where three or more labels meet, as positions in `points`, shape (e, 2).
+
+        Empty unless the mesh was made with `lines=True`."""
+        return self._made.edges_of_lines
+
+    @property
+    def line_of_edge(self) -> npt.NDArray[np.uint32]:
+        """The line of each row of `lines`, as a position in `line_labels`, shape (e,)."""
+        return self._made.line_of_edge
+
+    @functools.cached_property
+    def line_labels(self) -> list[tuple[int, ...]]:
+        """The labels that meet along each line, values of the image. The first is the background's where the outside
+        is one of them.
+
+        A line is the set of all edges along which the same labels meet."""
+        values = [value for value, _ in self._made.labels]
+        return [tuple(values[label] for label in labels) for labels in self._made.labels_of_lines]
 
     @functools.cached_property
     def names(self) -> dict[int, str]:
@@ -154,6 +175,12 @@ class Mesh:
 
         It has all points of the mesh, and the field data of to_vtk()."""
         return conversion.facets_to_vtk(self)
+
+    def lines_to_vtk(self) -> vtk.vtkPolyData:
+        """Returns a vtkPolyData of the edges in `lines`, with the cell array `line`. Needs the package vtk.
+
+        It has all points of the mesh, and the field data of to_vtk()."""
+        return conversion.lines_to_vtk(self)
 
     def _values_of(self, labels: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint32]:
         """Returns the image's values of labels that the mesher has numbered, read-only."""

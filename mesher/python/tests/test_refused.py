@@ -112,6 +112,8 @@ class RefusedTest(TestCase):
         self.assert_refused("target_elements", "radius", radius=1, target_elements=1000)
         self.assert_refused("target_tolerance", "target_elements", target_tolerance=3)
         self.assert_refused("target_elements: '2.5' is not an integer", target_elements=2.5)
+        self.assert_refused("lines excludes thin keep", "topology", lines=True, thin="keep")
+        self.assert_refused("lines excludes optimize", lines=True, optimize=True)
         self.assert_refused("algorithm", "podm-home", algorithm="fast")
         self.assert_refused("space", "voxel", space="MNI")
         self.assert_refused("dihedral_bounds", "pair", optimize=True, dihedral_bounds=8)

@@ -11,7 +11,7 @@ namespace {
 ClaimResult radius_edge_of(const Mesh& mesh, double bound) {
   Options options = two_threads();
   options.radius_edge_bound = bound;
-  return check_radius_edge(mesh, options);
+  return check_radius_edge(mesh, find_adjacency(mesh, 2), options);
 }
 
 TEST(RadiusEdge, IsStrictAtTheBound) {

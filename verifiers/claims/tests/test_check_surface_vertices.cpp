@@ -7,6 +7,8 @@
 #include "claims/check_labels_reach.h"
 #include "claims/claims.h"
 #include "claims/label_search.h"
+#include "claims/lines_of_image.h"
+#include "geometry/exact.h"
 #include "image/smoothing.h"
 #include "meshed_voxels.h"
 
@@ -92,6 +94,80 @@ TEST(SurfaceVertices, AllPointsOfTheIsosurfaceAreOnIt) {
         EXPECT_LT(result.details().at("furthest_voxels").get<double>(), 1e-9);
         EXPECT_FALSE(result.worst.empty()) << "the closest calls";
       }
+}
+
+// Moves a point near a line to where the weights of three labels are equal, by Newton's method, which takes
+// the shortest step. Returns nothing if other labels are greater there.
+std::optional<Point> on_line(const LabelFunction& function, const LinePoint& near) {
+  if (near.labels.size() != 3) return std::nullopt;
+  const std::uint32_t a = near.labels[0], b = near.labels[1], c = near.labels[2];
+  Point u = near.voxels;
+  for (int i = 0; i < 8; ++i) {
+    const LabelWeights w = function.weights_at(u);
+    const std::array<double, 2> f{w.weight_of(a) - w.weight_of(b), w.weight_of(a) - w.weight_of(c)};
+    const Point g = function.gradient_of_difference(u, a, b), h = function.gradient_of_difference(u, a, c);
+    const double gg = dot(g, g), gh = dot(g, h), hh = dot(h, h), det = gg * hh - gh * gh;
+    if (det < 0.01) return std::nullopt;
+    const double s = (hh * f[0] - gh * f[1]) / det, t = (gg * f[1] - gh * f[0]) / det;
+    for (std::size_t axis = 0; axis < 3; ++axis) u[axis] -= s * g[axis] + t * h[axis];
+  }
+  const LabelWeights w = function.weights_at(u);
+  const double least = std::min({w.weight_of(a), w.weight_of(b), w.weight_of(c)});
+  const double most = w.weights[w.best()];
+  return most - least < 1e-14 ? std::optional(u) : std::nullopt;
+}
+
+// Returns cells that share no vertices; their vertices are points where three labels meet.
+Mesh cells_on_lines(const Image& image, Space space) {
+  const LabelFunction function(image);
+  const ImageFrame frame(image, space);
+  Mesh mesh;
+  mesh.space = space;
+  for (const LinePoint& point : lines_of_image(image, frame, 2))
+    if (const auto u = on_line(function, point)) mesh.vertices.push_back(frame.voxels_to_mesh(*u));
+  for (VertexId v = 0; v + 3 < mesh.vertices.size(); v += 4) {
+    mesh.cells.push_back({v, v + 1, v + 2, v + 3});
+    mesh.cell_labels.push_back(1);
+  }
+  return mesh;
+}
+
+TEST(SurfaceVertices, PointsWhereThreeLabelsMeetAreOnTheIsosurface) {
+  for (const auto& affine : kAffines)
+    for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel})
+      for (const bool is_smoothed : {false, true}) {
+        std::mt19937 random(3);
+        Image image = make_image({6, 5, 4}, affine, [&](int, int, int) { return random() % 5; });
+        if (is_smoothed) image.smoothing = smooth(image, 0.8 * image.spacing[0], 2);
+        const ClaimResult result = surface_vertices_of(cells_on_lines(image, space), image);
+        EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
+        EXPECT_GT(result.details().at("vertices"), 1000);
+        EXPECT_LT(result.details().at("furthest_voxels").get<double>(), 1e-9);
+      }
+}
+
+// Three cells of different labels around an edge on the line of their labels, which is parallel to the axis
+// k. The weights between the voxels are 1 - x, x (1 - y) and x y: they are equal at x = 2/3, y = 1/2.
+Mesh cells_around_a_line(const Image& image, double off) {
+  const ImageFrame frame(image, Space::kRas);
+  Mesh mesh;
+  for (const Point& u : {Point{5 + 2.0 / 3 - off, 4.5, 3}, Point{5 + 2.0 / 3, 4.5, 3.7}, Point{5.5, 3.5, 3.2},
+                         Point{5.5, 5.5, 3.2}, Point{7, 4.5, 3.2}})
+    mesh.vertices.push_back(frame.voxels_to_mesh(u));
+  mesh.cells = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 3, 4}};
+  mesh.cell_labels = {1, 2, 3};
+  return mesh;
+}
+
+TEST(SurfaceVertices, TheEndOfALineEdgeIsJudgedAsOthers) {
+  const Image image = make_image(kSize, kUnitAffine, [](int i, int j, int) {
+    return i < 6 ? 1 : j < 5 ? 2 : 3;
+  });
+  const auto at = [&](double off) { return surface_vertices_of(cells_around_a_line(image, off), image); };
+  const ClaimResult on_line = at(0);
+  EXPECT_EQ(on_line.verdict, Verdict::kPass) << on_line.reason;
+  EXPECT_EQ(at(0.8 * kBound).verdict, Verdict::kPass);
+  EXPECT_EQ(at(1.5 * kBound).num_violations, 1U);
 }
 
 TEST(SurfaceVertices, ThoseOfStairsAreNoneOfASmoothInterface) {

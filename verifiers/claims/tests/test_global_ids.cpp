@@ -32,7 +32,7 @@ std::map<std::string, ClaimResult> results_of(const Mesh& mesh) {
   options.radius_mm = 0.1;
   options.min_dihedral_deg = 80;
   return {{"structure", check_structure(mesh, adjacency, options)},
-          {"radius_edge", check_radius_edge(mesh, options)},
+          {"radius_edge", check_radius_edge(mesh, adjacency, options)},
           {"boundary_angles", check_boundary_angles(mesh, adjacency, options)},
           {"size", check_size(mesh, nullptr, nullptr, options)},
           {"dihedral", check_dihedral(mesh, options)},

@@ -1,0 +1,302 @@
+#include "algorithms/sample_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <new>
+#include <utility>
+
+#include "algorithms/podm.h"
+#include "delaunay/walk.h"
+#include "lines/few_labels.h"
+#include "podm/errors.h"
+#include "podm/option.h"
+
+namespace podm {
+
+namespace {
+
+constexpr const char* kLines = "lines";
+// Floor of edges over the least distance of samples. The lines' delta is at least this part of the spacing of
+// other vertices: samples at half of it are still accepted (Worker::kSpacingFloor).
+constexpr double kFloor = 0.25;
+// Greatest distance of an arc from its edges, over the lines' delta.
+constexpr double kMostDeviation = 0.25;
+constexpr std::size_t kLeastOfLoop = 3;  // edges
+
+// The only worker. It finds cells by walks from the last one.
+class LineSampler {
+ public:
+  LineSampler(Construction& construction, const Parameters& parameters)
+      : stop_(construction.stop()),
+        mesh_(construction.mesh()),
+        rules_(construction.mesh(), construction.problem().isosurface, parameters),
+        edges_(*parameters.lines),
+        lines_(edges_.lines()),
+        workers_(construction.make_workers<NoLocks>(parameters, 1, kLines)),
+        worker_(*workers_.front()) {}
+  ~LineSampler() { worker_.flush_log(); }
+  LineSampler(const LineSampler&) = delete;
+
+  void sample();
+  void list_all() {
+    for (std::size_t arc = 0; arc < lines_.num_arcs(); ++arc)
+      edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) { listed_.push_back(edge); });
+  }
+  /// Splits edges until none is left to split, or the run is over. Returns the number of splits.
+  std::uint64_t split_all();
+  /// Vertices without an edge in the mesh that has three labels around it count as other vertices of the
+  /// isosurface from now on. Returns their number.
+  std::uint64_t give_up_lost();
+  /// The cells to which rules may apply: those that insertions made, and those around lost vertices.
+  Construction::Entries take_changed() { return std::exchange(changed_, {}); }
+
+ private:
+  bool is_over();
+  VertexId insert(const LinePoint& at);
+  void sample(std::size_t arc);
+  void list_around();
+  bool is_current(const LineEdge& edge) const;
+  bool is_to_be_split(const LineEdge& edge);
+  bool is_in_mesh(const LineEdge& edge);
+  bool has_three_labels(const LineEdge& edge);
+  bool split(const LineEdge& edge);
+  void find_ball(VertexId v);
+  void note_changed(const std::vector<CellId>& cells) {
+    for (const CellId c : cells) changed_.push_back({c, mesh_.stamp(c)});
+  }
+  CellId living_cell();
+
+  StopControl& stop_;
+  CellMeter meter_;
+  Mesh& mesh_;
+  const Rules rules_;
+  LineEdges& edges_;
+  const Lines& lines_;
+  const Construction::Workers<NoLocks> workers_;
+  Worker<NoLocks>& worker_;
+  CellId last_ = 0;
+  std::deque<LineEdge> listed_;
+  Construction::Entries changed_;
+  std::vector<CellId> ball_;  // scratch
+};
+
+CellId LineSampler::living_cell() {
+  while (!mesh_.cell(last_).is_alive()) last_ = (last_ + 1) % mesh_.cell_bound();
+  return last_;
+}
+
+// One look at the limits takes much less time than an insertion or a ball.
+bool LineSampler::is_over() {
+  meter_.report(worker_, stop_);
+  stop_.check_limits();
+  return stop_.is_over();
+}
+
+// Where the exact point is not found, the vertex is at least on the isosurface.
+VertexId LineSampler::insert(const LinePoint& at) {
+  const std::optional<Point> p = at.is_exact ? at.point : rules_.settled(at.point, edges_.delta_mm());
+  const VertexId v = p ? worker_.insert_on_line(*p, living_cell()) : kNoVertex;
+  if (v == kNoVertex) return v;
+  last_ = worker_.created().front();
+  note_changed(worker_.created());
+  return v;
+}
+
+void LineSampler::sample() {
+  const LineNetwork& network = lines_.network();
+  for (std::size_t node = 0; node < network.nodes.size() && !is_over(); ++node) {
+    const std::optional<Point> exact = lines_.exact_node(node);
+    VertexId v = exact ? insert({*exact, 0, true}) : kNoVertex;
+    const bool is_exact = v != kNoVertex;
+    if (!is_exact) v = insert({network.nodes[node].point, 0, false});  // two may be one exact point
+    if (v == kNoVertex) continue;
+    edges_.set_node(node, v);
+    edges_.num_inexact += !is_exact;
+  }
+  for (std::size_t arc = 0; arc < lines_.num_arcs() && !is_over(); ++arc) sample(arc);
+  list_all();
+}
+
+void LineSampler::sample(std::size_t arc) {
+  const LineArc& of = lines_.network().arcs[arc];
+  const auto has_vertex = [&](std::int32_t node) {
+    return edges_.vertex_of_node(static_cast<std::size_t>(node)) != kNoVertex;
+  };
+  if (!of.is_closed() && !(has_vertex(of.first_node) && has_vertex(of.last_node))) return;
+  const double length = lines_.arc(arc).length();
+  const bool is_loop = of.first_node == of.last_node;
+  const auto count = std::max(static_cast<std::size_t>(std::ceil(length / edges_.delta_mm())),
+                              is_loop ? kLeastOfLoop : std::size_t{1});
+  if (is_loop && length < static_cast<double>(count) * edges_.floor_mm()) return;
+  std::vector<LineEdges::Sample> inner;
+  for (std::size_t i = of.is_closed() ? 0 : 1; i < count && !is_over(); ++i) {
+    const double position = length * static_cast<double>(i) / static_cast<double>(count);
+    const LinePoint at = edges_.point_at(arc, position);
+    const VertexId v = insert(at);
+    if (v == kNoVertex) continue;
+    inner.push_back({v, position});
+    edges_.num_inexact += !at.is_exact;
+  }
+  const std::size_t least = of.is_closed() ? kLeastOfLoop : is_loop ? kLeastOfLoop - 1 : 0;
+  if (inner.size() >= least && !stop_.is_over()) return edges_.join(arc, inner);
+  for (const LineEdges::Sample& sample : inner) mesh_.vertex(sample.vertex).kind = VertexKind::kPinned;
+}
+
+// A later split may have replaced a listed edge.
+bool LineSampler::is_current(const LineEdge& edge) const {
+  bool is_found = false;
+  edges_.for_each_edge_of(edge.first, [&](const LineEdge& of) { is_found = is_found || of.is_same(edge); });
+  return is_found;
+}
+
+// Collects the cells around v.
+void LineSampler::find_ball(VertexId v) {
+  last_ = cell_with(mesh_, mesh_.point(v), living_cell());
+  ball_.clear();
+  const auto add = [&](CellId c) {
+    if (mesh_.is_marked(c)) return;
+    mesh_.mark(c, true);
+    ball_.push_back(c);
+  };
+  add(last_);
+  for (std::size_t i = 0; i < ball_.size(); ++i) {
+    const Cell& cell = mesh_.cell(ball_[i]);
+    for (unsigned k = 0; k < 4; ++k)
+      if (cell.vertices[k] != v && cell.mirrors[k] != kNoFacet) add(cell_of(cell.mirrors[k]));
+  }
+  for (const CellId c : ball_) mesh_.mark(c, false);
+}
+
+bool LineSampler::is_to_be_split(const LineEdge& edge) {
+  if (!edges_.may_be_split(edge)) return false;
+  if (lines_.arc(edge.arc).chord_deviation(edge.from, edge.to) > kMostDeviation * edges_.delta_mm())
+    return true;
+  if (!is_in_mesh(edge)) return true;
+  const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
+  return std::ranges::any_of(ball_, [&](CellId c) {
+    const auto& vertices = mesh_.cell(c).vertices;
+    return std::ranges::find(vertices, edge.last) != vertices.end() &&
+           std::ranges::any_of(vertices, [&](VertexId v) {
+             const Point& p = mesh_.point(v);
+             return v != edge.first && v != edge.last && dot(a - p, b - p) < 0;
+           });
+  });
+}
+
+// Leaves the ball of the first vertex in ball_.
+bool LineSampler::is_in_mesh(const LineEdge& edge) {
+  find_ball(edge.first);
+  return std::ranges::any_of(ball_, [&](CellId c) {
+    const auto& vertices = mesh_.cell(c).vertices;
+    return std::ranges::find(vertices, edge.last) != vertices.end();
+  });
+}
+
+bool LineSampler::has_three_labels(const LineEdge& edge) {
+  if (!is_in_mesh(edge)) return false;
+  FewLabels labels;
+  for (const CellId c : ball_) {
+    const auto& vertices = mesh_.cell(c).vertices;
+    if (labels.size() < 3 && std::ranges::find(vertices, edge.last) != vertices.end())
+      labels.insert(rules_.label_of(c));
+  }
+  return labels.size() >= 3;
+}
+
+std::uint64_t LineSampler::give_up_lost() {
+  std::vector<bool> has_edge(mesh_.vertex_bound());
+  for (std::size_t arc = 0; arc < lines_.num_arcs(); ++arc)
+    edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
+      if (has_three_labels(edge)) has_edge[edge.first] = has_edge[edge.last] = true;
+    });
+  std::uint64_t count = 0;
+  for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
+    if (has_edge[v] || mesh_.vertex(v).kind != VertexKind::kLine) continue;
+    mesh_.vertex(v).kind = VertexKind::kPinned;
+    find_ball(v);
+    for (const CellId c : ball_) mesh_.forget_facets_passing_r3(c);  // R3 is another one here now
+    note_changed(ball_);
+    ++count;
+  }
+  return count;
+}
+
+// Lists the edges of the vertices of new cells.
+void LineSampler::list_around() {
+  std::vector<VertexId> vertices;
+  for (const CellId c : worker_.created())
+    for (const VertexId v : mesh_.cell(c).vertices)
+      if (mesh_.vertex(v).kind == VertexKind::kLine) vertices.push_back(v);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const VertexId v : vertices)
+    edges_.for_each_edge_of(v, [&](const LineEdge& edge) { listed_.push_back(edge); });
+}
+
+bool LineSampler::split(const LineEdge& edge) {
+  const LinePoint at = edges_.split_point(edge);
+  const VertexId v = insert(at);
+  if (v == kNoVertex) return false;
+  edges_.split(edge, v, at);
+  list_around();
+  return true;
+}
+
+std::uint64_t LineSampler::split_all() {
+  std::uint64_t count = 0;
+  for (; !listed_.empty() && !is_over(); listed_.pop_front()) {
+    const LineEdge edge = listed_.front();
+    if (is_current(edge) && is_to_be_split(edge)) count += split(edge);
+  }
+  return count;
+}
+
+// Throws InputError on a lines' delta that leaves no room for samples.
+void check_delta(const Problem& problem, const Parameters& parameters) {
+  const double least_mm = kFloor * parameters.spacing_mm;
+  if (problem.lines_delta_mm < least_mm)
+    throw InputError(fmt::format("{}: {:g} mm is below {:.4g} mm, a quarter of the spacing of other vertices",
+                                 spelled("lines-delta"), problem.lines_delta_mm, least_mm));
+}
+
+}  // namespace
+
+void sample_lines(Construction& construction, Parameters& parameters) try {
+  const Problem& problem = construction.problem();
+  if (problem.lines == nullptr || construction.stop().is_over()) return;
+  construction.timed(kLines, [&] {
+    check_delta(problem, parameters);
+    const double floor_mm = kFloor * std::min(parameters.spacing_mm, problem.lines_delta_mm);
+    construction.keep_lines(std::make_unique<LineEdges>(*problem.lines, problem.lines_delta_mm, floor_mm,
+                                                        construction.mesh().vertex_capacity()));
+    parameters.lines = construction.line_edges();
+    LineSampler sampler(construction, parameters);
+    sampler.sample();
+    sampler.split_all();
+  });
+} catch (const std::bad_alloc&) {
+  construction.stop().end(StopReason::kMemoryLimit);
+}
+
+void mend_lines(Construction& construction, const Parameters& parameters) try {
+  if (parameters.lines == nullptr) return;
+  std::uint64_t num_changes = 1;
+  while (num_changes > 0 && !construction.stop().is_over()) {
+    Construction::Entries changed;
+    construction.timed(kLines, [&] {
+      LineSampler sampler(construction, parameters);
+      sampler.list_all();
+      num_changes = sampler.split_all() + sampler.give_up_lost();
+      changed = sampler.take_changed();
+    });
+    if (num_changes > 0)
+      refine_anywhere(construction, kLines, parameters, changed, construction.num_workers());
+  }
+} catch (const std::bad_alloc&) {
+  construction.stop().end(StopReason::kMemoryLimit);
+}
+
+}  // namespace podm

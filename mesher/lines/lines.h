@@ -1,0 +1,42 @@
+// The traced lines of an image, ready to be sampled.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lines/arc.h"
+#include "lines/exact_points.h"
+#include "lines/line_network.h"
+
+namespace podm {
+
+class Lines {
+ public:
+  /// Keeps a reference to the image; `weights` as in ExactPoints.
+  Lines(LineNetwork network, const LabelImage& image, std::shared_ptr<const VoxelWeights> weights)
+      : network_(std::move(network)), exact_(image, std::move(weights)) {
+    arcs_.reserve(network_.arcs.size());
+    for (const LineArc& arc : network_.arcs) arcs_.emplace_back(arc);
+  }
+  Lines(const Lines&) = delete;
+  Lines& operator=(const Lines&) = delete;
+
+  const LineNetwork& network() const { return network_; }
+  std::size_t num_arcs() const { return arcs_.size(); }
+  const Arc& arc(std::size_t a) const { return arcs_[a]; }
+  /// The line's point near the arc's at a position. None if it is not found.
+  std::optional<Point> exact_point(std::size_t arc, double position) const {
+    return exact_.near(arcs_[arc].point_at(position), network_.arcs[arc].labels);
+  }
+  std::optional<Point> exact_node(std::size_t node) const {
+    return exact_.near(network_.nodes[node].point, network_.nodes[node].labels);
+  }
+
+ private:
+  LineNetwork network_;
+  std::vector<Arc> arcs_;
+  ExactPoints exact_;
+};
+
+}  // namespace podm

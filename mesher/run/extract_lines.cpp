@@ -1,0 +1,259 @@
+#include "run/extract_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "image/working_frame.h"
+#include "lines/line_graph.h"
+
+namespace podm {
+
+namespace {
+
+// The first two exclude a stretch: the mesh has no room for its edges.
+constexpr const char *kBesideOther = "too near another line", *kTooSmall = "too small to be sampled",
+                     *kNoEdge = "no edge of the mesh";
+
+// An edge, whatever the order of its ends.
+using Key = std::uint64_t;
+Key key_of(std::uint32_t u, std::uint32_t v) { return Key{std::min(u, v)} << 32 | std::max(u, v); }
+Key key_of(const LineEdge& edge) { return key_of(edge.first, edge.last); }
+
+// Labels in ascending order, without repetitions.
+using LabelSet = std::vector<LabelIndex>;
+
+void insert_label(LabelSet& labels, LabelIndex label) {
+  const auto at = std::ranges::lower_bound(labels, label);
+  if (at == labels.end() || *at != label) labels.insert(at, label);
+}
+
+// The vertices on lines, by cubes. A cube's side is at least the length of any edge, so a ball around an edge
+// meets at most eight cubes.
+class VerticesOnLines {
+ public:
+  VerticesOnLines(const Mesh& mesh, const LineEdges& edges) : mesh_(mesh) {
+    const std::size_t num_arcs = edges.lines().network().arcs.size();
+    for (std::size_t arc = 0; arc < num_arcs; ++arc)
+      edges.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
+        side_ = std::max(side_, distance(mesh.point(edge.first), mesh.point(edge.last)));
+      });
+    for (std::size_t arc = 0; arc < num_arcs; ++arc)
+      edges.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
+        for (const VertexId v : {edge.first, edge.last})
+          vertices_.push_back({cube_of(mesh.point(v)), v, edge.arc});
+      });
+    std::ranges::sort(vertices_);
+    const auto repeated = std::ranges::unique(vertices_);
+    vertices_.erase(repeated.begin(), repeated.end());
+  }
+
+  /// Returns true if a vertex of another arc is in the ball of the edge.
+  bool has_another_in_ball_of(const LineEdge& edge) const {
+    const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
+    const Point middle = a + 0.5 * (b - a);
+    const double radius = distance(a, b) / 2;
+    const Cube low = cube_of(middle - Vector{radius, radius, radius}),
+               high = cube_of(middle + Vector{radius, radius, radius});
+    for (std::int64_t i = low[0]; i <= high[0]; ++i)
+      for (std::int64_t j = low[1]; j <= high[1]; ++j)
+        for (std::int64_t k = low[2]; k <= high[2]; ++k)
+          if (has_another_in_ball_and_cube(edge, {i, j, k})) return true;
+    return false;
+  }
+
+ private:
+  using Cube = std::array<std::int64_t, 3>;
+  struct Entry {
+    Cube cube;
+    VertexId vertex;
+    std::uint32_t arc;
+    auto operator<=>(const Entry&) const = default;
+  };
+
+  Cube cube_of(const Point& p) const {
+    const auto number = [&](double x) { return static_cast<std::int64_t>(std::floor(x / side_)); };
+    return {number(p.x), number(p.y), number(p.z)};
+  }
+  bool has_another_in_ball_and_cube(const LineEdge& edge, const Cube& cube) const {
+    const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
+    return std::ranges::any_of(std::ranges::equal_range(vertices_, cube, {}, &Entry::cube),
+                               [&](const Entry& other) {
+                                 const Point& p = mesh_.point(other.vertex);
+                                 return other.arc != edge.arc && dot(a - p, b - p) < 0;
+                               });
+  }
+
+  const Mesh& mesh_;
+  double side_ = std::numeric_limits<double>::min();
+  std::vector<Entry> vertices_;
+};
+
+class LineExtractor {
+ public:
+  LineExtractor(const Mesh& mesh, const LineEdges& edges, const LabelImage& image, LinesReport& report)
+      : mesh_(mesh),
+        edges_(edges),
+        network_(edges.lines().network()),
+        image_(image),
+        report_(report),
+        vertices_(mesh, edges) {}
+
+  MeshLines operator()() {
+    find_labels_around_edges();
+    report_.delta_mm = out_.delta_mm = edges_.delta_mm();
+    report_.floor_mm = edges_.floor_mm();
+    report_.arcs = network_.arcs.size();
+    report_.nodes = network_.nodes.size();
+    report_.splits = edges_.num_splits;
+    report_.inexact_vertices = edges_.num_inexact;
+    for (std::size_t arc = 0; arc < network_.arcs.size(); ++arc) add(arc);
+    report_.edges = out_.edges.size();
+    report_.untraced_mm = untraced_mm();
+    for (const UndecidedPlace& place : network_.undecided) add(place);
+    return std::move(out_);
+  }
+
+ private:
+  void find_labels_around_edges();
+  const char* why_left_out(const LineEdge& edge) const;
+  void add(std::size_t arc);
+  void keep(const LineEdge& edge);
+  void add(const UndecidedPlace& place);
+  std::uint32_t line_of(const LabelSet& labels);
+  std::array<double, 3> ras(const Point& p) const {
+    const Point world = map(working_to_world(image_), p);
+    return {world.x, world.y, world.z};
+  }
+  double untraced_mm() const;
+  void leave_out(std::size_t arc, double from, double length_mm, const char* reason);
+
+  const Mesh& mesh_;
+  const LineEdges& edges_;
+  const LineNetwork& network_;
+  const LabelImage& image_;
+  LinesReport& report_;
+  VerticesOnLines vertices_;
+  std::unordered_map<Key, LabelSet> around_;  // by edge of the table: the labels of the cells around it
+  std::unordered_set<Key> kept_;
+  std::map<LabelSet, std::uint32_t> lines_;
+  MeshLines out_;
+};
+
+void LineExtractor::find_labels_around_edges() {
+  for (std::size_t arc = 0; arc < network_.arcs.size(); ++arc)
+    edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) { around_.try_emplace(key_of(edge)); });
+  std::vector<bool> is_on_line(mesh_.vertex_bound());
+  for (const auto& [key, labels] : around_)
+    is_on_line[key >> 32] = is_on_line[static_cast<VertexId>(key)] = true;
+  for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
+    if (!mesh_.cell(c).is_alive()) continue;
+    const auto& vertices = mesh_.cell(c).vertices;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i && is_on_line[vertices[i]]; ++j)
+        if (is_on_line[vertices[j]])
+          if (const auto found = around_.find(key_of(vertices[i], vertices[j])); found != around_.end())
+            insert_label(found->second, mesh_.label(c));
+  }
+}
+
+// Null if the edge is kept. Two arcs may join the same vertices: the edge is then the first one's.
+const char* LineExtractor::why_left_out(const LineEdge& edge) const {
+  if (kept_.contains(key_of(edge))) return kBesideOther;
+  if (std::ranges::includes(around_.at(key_of(edge)), network_.arcs[edge.arc].labels)) return nullptr;
+  return vertices_.has_another_in_ball_of(edge) ? kBesideOther : kNoEdge;
+}
+
+std::uint32_t LineExtractor::line_of(const LabelSet& labels) {
+  const auto [found, is_new] = lines_.emplace(labels, static_cast<std::uint32_t>(lines_.size()));
+  if (is_new) out_.labels_of_line.push_back(labels);
+  return found->second;
+}
+
+void LineExtractor::leave_out(std::size_t arc, double from, double length_mm, const char* reason) {
+  LinesReport::LeftOut left_out{reason, {}, length_mm, {}};
+  for (const LabelIndex label : network_.arcs[arc].labels) left_out.labels.push_back(image_.labels[label]);
+  left_out.ras_mm = ras(edges_.lines().arc(arc).point_at(from + length_mm / 2));
+  if (reason == kBesideOther || reason == kTooSmall) report_.excluded_mm += length_mm;
+  report_.left_out.push_back(std::move(left_out));
+}
+
+void LineExtractor::add(std::size_t arc) {
+  const double length_mm = edges_.lines().arc(arc).length();
+  report_.traced_mm += length_mm;
+  bool has_edge = false;
+  edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
+    has_edge = true;
+    if (const char* reason = why_left_out(edge))
+      leave_out(arc, edge.from, edges_.length(edge), reason);
+    else
+      keep(edge);
+  });
+  if (!has_edge) leave_out(arc, 0, length_mm, kTooSmall);
+}
+
+// The labels around the edge name its line: others may meet there beside those of the arc.
+void LineExtractor::keep(const LineEdge& edge) {
+  kept_.insert(key_of(edge));
+  report_.kept_mm += edges_.length(edge);
+  out_.edges.push_back({edge.first, edge.last});
+  out_.line_of_edge.push_back(line_of(around_.at(key_of(edge))));
+}
+
+// Four arcs end at a node where four labels meet. For each arc that tracing contracts into a node, two more
+// arcs end there. An undecided place may hide a curve of a voxel.
+double LineExtractor::untraced_mm() const {
+  std::vector<std::size_t> ends(network_.nodes.size());
+  for (const LineArc& arc : network_.arcs)
+    if (!arc.is_closed())
+      for (const std::int32_t node : {arc.first_node, arc.last_node}) ++ends[static_cast<std::size_t>(node)];
+  double voxels = static_cast<double>(network_.undecided.size());
+  for (const std::size_t count : ends)
+    voxels += kShortArc * (std::max(0.5 * static_cast<double>(count), 2.0) - 2);
+  return voxels * std::ranges::max(image_.spacing);
+}
+
+void LineExtractor::add(const UndecidedPlace& place) {
+  static constexpr std::array kReasons{"missed", "unconfirmed", "too small"};
+  report_.undecided.push_back({kReasons[static_cast<std::size_t>(place.reason)],
+                               {place.block.i, place.block.j, place.block.k},
+                               ras(place.point)});
+}
+
+}  // namespace
+
+MeshLines extract_lines(const Mesh& mesh, const LineEdges& edges, const LabelImage& image,
+                        LinesReport& report) {
+  return LineExtractor(mesh, edges, image, report)();
+}
+
+// Three labels meet only at edges of three facets or more.
+std::vector<std::array<std::uint32_t, 2>> stray_edges(const TetMesh& mesh) {
+  std::vector<std::pair<Key, std::uint32_t>> facets_of_edges;  // edge and facet
+  facets_of_edges.reserve(3 * mesh.facets.size());
+  for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+    for (std::size_t i = 0; i < 3; ++i)
+      facets_of_edges.emplace_back(key_of(mesh.facets[f][i], mesh.facets[f][(i + 1) % 3]), f);
+  std::sort(facets_of_edges.begin(), facets_of_edges.end());
+  std::unordered_set<Key> lines;
+  for (const auto& edge : mesh.lines.edges) lines.insert(key_of(edge[0], edge[1]));
+  std::vector<std::array<std::uint32_t, 2>> strays;
+  for (auto first = facets_of_edges.begin(); first != facets_of_edges.end();) {
+    const auto last = std::find_if(first, facets_of_edges.end(),
+                                   [&](const auto& each) { return each.first != first->first; });
+    LabelSet labels;
+    for (auto each = first; last - first >= 3 && each != last; ++each)
+      for (const LabelIndex label : mesh.facet_labels[each->second]) insert_label(labels, label);
+    if (labels.size() >= 3 && !lines.contains(first->first))
+      strays.push_back(
+          {static_cast<std::uint32_t>(first->first >> 32), static_cast<std::uint32_t>(first->first)});
+    first = last;
+  }
+  return strays;
+}
+
+}  // namespace podm
