@@ -17,7 +17,7 @@ namespace {
 // The command as typed, before finish_options().
 struct TypedCommand : Command {
   std::vector<std::string> radius_of, size_near, merges;
-  std::string claims, space, labels, drop, layers;
+  std::string claims, space, labels, drop, layers, box;
 };
 
 // Accepts positive, finite numbers only. Bounds are converted to rationals, which have no NaN and no
@@ -102,6 +102,14 @@ void declare_selection(CLI::App& app, TypedCommand& command) {
              "otherwise none]")
       ->check(positive())
       ->needs(image);
+}
+
+void declare_box(CLI::App& app, TypedCommand& command) {
+  add_option(app, "--box", "open|flat", command.box,
+             "sides of the image's box, as given to podm mesh: flat ones end the labels in the planes of\n"
+             "the outermost voxels' outer faces [default: as the file promises]")
+      ->check(CLI::IsMember({"open", "flat"}))
+      ->needs(app.get_option("--image"));
 }
 
 void declare_claims(CLI::App& app, TypedCommand& command) {
@@ -206,6 +214,7 @@ void declare_report(CLI::App& app, TypedCommand& command, Program program) {
 void declare_options(CLI::App& app, TypedCommand& command, Program program) {
   declare_inputs(app, command, program);
   declare_selection(app, command);
+  declare_box(app, command);
   declare_claims(app, command);
   declare_report(app, command, program);
   app.footer(
@@ -231,6 +240,7 @@ void finish_options(TypedCommand& command) {
   if (command.space == "RAS") options.space = Space::kRas;
   if (command.space == "LPS") options.space = Space::kLps;
   if (command.space == "voxel") options.space = Space::kVoxel;
+  if (!command.box.empty()) options.is_box_flat = command.box == "flat";
   for (const std::string& text : command.radius_of) {
     const std::size_t equals = text.find('=');
     LabelValue label = 0;

@@ -58,6 +58,7 @@ struct Mesh {
   std::optional<std::uint64_t> promised_topology;
   std::vector<ListedDifference> listed_differences;
   std::optional<double> smoothing_mm;             ///< width by which the image was smoothed before meshing
+  bool promises_flat_box = false;                 ///< facets at the image's border lie in planes
   std::optional<double> promised_lines_delta_mm;  ///< distance at which lines of three labels are sampled
   /// The part of the mesh that this rank holds (ranks/part.h); null: the whole mesh.
   std::shared_ptr<const Part> part;

@@ -39,6 +39,7 @@ struct Options {
   /// The distance at which the mesh samples lines; overrides the one that the mesh file promises. With
   /// either, a weaker bound holds near lines (check_boundary_angles.cpp).
   std::optional<double> lines_delta_mm;
+  std::optional<bool> is_box_flat;          ///< overrides what the mesh file promises about the box
   std::optional<Space> space;               ///< overrides the space that the file states
   int threads = 0;                          ///< 0: all cores
   std::string json_path, extract_bad_path;  ///< empty: not written; json_path "-": standard output

@@ -23,6 +23,9 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
       return true;
     case Needs::kImage:
       return !options.image_path.empty();
+    case Needs::kFlatBox:
+      return !options.image_path.empty() && options.is_box_flat.value_or(mesh.promises_flat_box) &&
+             mesh.part == nullptr;
     case Needs::kLines:
       return !options.image_path.empty() && (options.lines_delta_mm || mesh.promised_lines_delta_mm) &&
              mesh.part == nullptr;
@@ -38,7 +41,8 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
 }
 
 bool needs_image(Needs needs) {
-  return needs == Needs::kImage || needs == Needs::kPromisedImage || needs == Needs::kLines;
+  return needs == Needs::kImage || needs == Needs::kPromisedImage || needs == Needs::kLines ||
+         needs == Needs::kFlatBox;
 }
 
 // True if all vertex ids and coordinates are sound, which every claim except structure relies on.
@@ -111,6 +115,7 @@ const std::vector<Claim>& all_claims() {
       {"labels", Needs::kImage, [](I i, A, O o) { return check_labels(i.mesh, *i.image, o); }},
       {"surface_vertices", Needs::kImage,
        [](I i, A a, O o) { return check_surface_vertices(i.mesh, a, *i.image, o); }},
+      {"box", Needs::kFlatBox, [](I i, A a, O o) { return check_box(i.mesh, a, *i.image, o); }},
       {"lines", Needs::kLines, [](I i, A a, O o) { return check_lines(i.mesh, a, *i.image, o); }},
       {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }},
       {"topology", Needs::kPromisedImage, [](I i, A a, O) { return check_topology(i.mesh, a, *i.image); }}};
@@ -146,6 +151,7 @@ Inputs read_inputs(const Options& options, Mesh mesh) {
   if (!options.image_path.empty()) inputs.image = read_image(options.image_path, options.selection);
   if (!options.size_image_path.empty()) inputs.sizes = read_size_image(options.size_image_path);
   if (inputs.image && options.selection != LabelSelection{}) select_labels(*inputs.image, options.selection);
+  if (inputs.image) inputs.image->is_box_flat = options.is_box_flat.value_or(inputs.mesh.promises_flat_box);
   const std::optional<double> width = options.smooth_mm ? options.smooth_mm : inputs.mesh.smoothing_mm;
   if (inputs.image && width) inputs.image->smoothing = smooth(*inputs.image, *width, options.threads);
   if (options.selection.background != 0) move_background(inputs.mesh, options.selection.background);

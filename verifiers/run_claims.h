@@ -22,6 +22,7 @@ enum class Needs {
   kBound,
   kDihedralBound,
   kPromisedImage,  ///< an image, and a file that promises the claim, or a request by name
+  kFlatBox,        ///< an image, and a flat box: an option or a file that promises it
   kLines,          ///< an image, and the distance at which the mesh samples lines; not on ranks
 };
 

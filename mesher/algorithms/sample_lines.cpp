@@ -97,7 +97,8 @@ bool LineSampler::is_over() {
 
 // Where the exact point is not found, the vertex is at least on the isosurface.
 VertexId LineSampler::insert(const LinePoint& at) {
-  const std::optional<Point> p = at.is_exact ? at.point : rules_.settled(at.point, edges_.delta_mm());
+  std::optional<Point> p = at.point;
+  if (!at.is_exact) p = rules_.settled(at.point, edges_.delta_mm());
   const VertexId v = p ? worker_.insert_on_line(*p, living_cell()) : kNoVertex;
   if (v == kNoVertex) return v;
   last_ = worker_.created().front();

@@ -44,6 +44,7 @@
 #include "geometry/circumsphere.h"
 #include "geometry/point.h"
 #include "geometry/tetrahedron.h"
+#include "podm/box_sides.h"
 #include "podm/label_image.h"
 #include "runtime/huge_array.h"
 #include "runtime/shared_word.h"
@@ -80,6 +81,8 @@ struct Vertex {
   std::uint32_t lock = 0;         // the lock word (vertex_locks.h)
   std::uint16_t local_index = 0;  // scratch of the operation that holds the lock
   VertexKind kind = VertexKind::kUnused;
+  /// The sides of a flat box that an isosurface vertex is on. These bits decide, never its coordinates.
+  SideMask sides = 0;
 };
 static_assert(sizeof(Vertex) == 32);
 
@@ -94,7 +97,7 @@ inline Point peek_point(const Vertex& v) {
   return {peek(v.point.x), peek(v.point.y), peek(v.point.z)};
 }
 /// Turns an unused vertex into one at `p`.
-inline void place(Vertex& v, const Point& p, VertexKind kind) {
+inline void place(Vertex& v, const Point& p, VertexKind kind, SideMask sides = 0) {
   const std::memory_order release = order_of(OrderedAccess::kPlace, std::memory_order_release);
   store(v.point.x, p.x, release);
   step();
@@ -102,6 +105,7 @@ inline void place(Vertex& v, const Point& p, VertexKind kind) {
   step();
   store(v.point.z, p.z, release);
   v.kind = kind;
+  v.sides = sides;
 }
 
 inline constexpr LabelIndex kUnknownLabel = 0xffff;

@@ -123,7 +123,7 @@ class Operation {
   /// Carries the plan out; created() then lists the new cells. kTooNear: a vertex that stays is nearer to p
   /// than `min_distance` (mm), or the region has more vertices than HoleFiller can number. Nothing was
   /// written then, and the caller must roll back.
-  StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance, SideMask sides = 0);
   /// Carries out the move that was planned last; inserted() is then the vertex.
   void commit_move();
   /// Carries out a plan that consists of removals only; kTooNear: the region has too many vertices.

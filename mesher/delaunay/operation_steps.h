@@ -301,7 +301,8 @@ void Operation<Locks>::reserve_memory(std::size_t num_created) {
 }
 
 template <class Locks>
-StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
+StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance,
+                                              SideMask sides) {
   const double nearest = is_star_ ? star_.squared_distance() : squared_distance_to_region(p);
   if (nearest < min_distance * min_distance) return StepResult::kTooNear;
   if (!is_star_) {
@@ -311,7 +312,7 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   reserve_memory(is_star_ ? star_.num_cells() : hole_.num_cells());
   count_gluing();
   inserted_ = pool_.take_vertex();
-  place(mesh_.vertex(inserted_), p, kind);  // a worker with a stale entry may try its lock
+  place(mesh_.vertex(inserted_), p, kind, sides);  // a worker with a stale entry may try its lock
   const std::size_t num_destroyed = region_.cells.size();
   if (is_star_) {
     star_.fill(mesh_, pool_, region_, inserted_);
@@ -329,7 +330,7 @@ void Operation<Locks>::commit_move() {
   collect_boundary();
   count_gluing();
   inserted_ = pool_.take_vertex();
-  place(mesh_.vertex(inserted_), move_.point(), move_.kind());
+  place(mesh_.vertex(inserted_), move_.point(), move_.kind(), move_.sides());
   const std::size_t num_destroyed = region_.cells.size();
   move_.fill(pool_, region_, inserted_);
   count_vertex(AccessKind::kMeshWrite, inserted_);

@@ -52,7 +52,7 @@ std::size_t Relocation::move(WorkerId self, Pool& pool) {
     for (const VertexId v : found.vertices) {
       if (vertices_now_[v] == v) continue;
       const Vertex& old = mesh_.vertex(v);
-      place(mesh_.vertex(vertices_now_[v]), old.point, old.kind);
+      place(mesh_.vertex(vertices_now_[v]), old.point, old.kind, old.sides);
       pool.release_vertex(v);
     }
   });

@@ -10,6 +10,7 @@ void VertexMove::begin(VertexId v, const HoleFiller& hole) {
   v_ = v;
   moved_.point = mesh_.point(v);  // not the lock word, which other workers read at any time
   moved_.kind = mesh_.vertex(v).kind;
+  moved_.sides = mesh_.vertex(v).sides;
   hole.list(mesh_, kFirstPlanned, cells_);
   num_in_hole_ = cells_.size();
   reglued_.clear();

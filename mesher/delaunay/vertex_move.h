@@ -54,6 +54,7 @@ class VertexMove {
 
   const Point& point() const { return moved_.point; }
   VertexKind kind() const { return moved_.kind; }
+  SideMask sides() const { return moved_.sides; }
   /// Ids of the cells around p. They have no mirrors to each other before glue_star().
   CellId first_of_star() const { return kFirstPlanned + static_cast<CellId>(num_in_hole_); }
   CellId end() const { return kFirstPlanned + static_cast<CellId>(cells_.size()); }

@@ -10,7 +10,19 @@ namespace {
 // than that of sheared ones.
 constexpr double kRounding = 1e-12;
 
-// True if some columns of the affine are not orthogonal.
+// True if each axis of the image is parallel to one of the world.
+bool is_permuted(const Affine& a) {
+  for (std::size_t row = 0; row < 3; ++row)
+    if ((a[4 * row] != 0) + (a[4 * row + 1] != 0) + (a[4 * row + 2] != 0) != 1) return false;
+  return true;
+}
+
+bool has_own_frame(const LabelImage& image) {
+  return is_sheared(image) || (image.is_box_flat && !is_permuted(image.voxel_to_ras));
+}
+
+}  // namespace
+
 bool is_sheared(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
   double worst = 0;
@@ -22,15 +34,13 @@ bool is_sheared(const LabelImage& image) {
   return worst > kRounding;
 }
 
-}  // namespace
-
 Affine voxels_to_working(const LabelImage& image) {
   const auto& s = image.spacing;
-  return is_sheared(image) ? Affine{s[0], 0, 0, 0, 0, s[1], 0, 0, 0, 0, s[2], 0} : image.voxel_to_ras;
+  return has_own_frame(image) ? Affine{s[0], 0, 0, 0, 0, s[1], 0, 0, 0, 0, s[2], 0} : image.voxel_to_ras;
 }
 
 Affine working_to_world(const LabelImage& image) {
-  if (!is_sheared(image)) return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  if (!has_own_frame(image)) return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   Affine a = image.voxel_to_ras;
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t axis = 0; axis < 3; ++axis) a[4 * row + axis] /= image.spacing[axis];

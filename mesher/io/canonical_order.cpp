@@ -254,6 +254,10 @@ void sort_lines(MeshLines& lines, const std::vector<VertexId>& position) {
 void canonicalize(TetMesh& mesh, int threads) {
   const std::size_t used = num_threads(threads);
   const std::vector<VertexId> position = sort_vertices(mesh.vertices, used);
+  if (!mesh.vertex_sides.empty()) {
+    const std::vector<SideMask> sides = mesh.vertex_sides;
+    for (std::size_t v = 0; v < sides.size(); ++v) mesh.vertex_sides[position[v]] = sides[v];
+  }
   SimplexSorter(mesh.cells, mesh.cell_labels, position, used).sort();
   SimplexSorter(mesh.facets, mesh.facet_labels, position, used).sort();
   sort_lines(mesh.lines, position);

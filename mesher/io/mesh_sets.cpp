@@ -1,9 +1,35 @@
 #include "io/mesh_sets.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace podm {
+
+namespace {
+
+std::size_t number_of_side(SideMask side) {
+  return side == 0 ? kNumSides : static_cast<std::size_t>(std::countr_zero(side));
+}
+
+// Has a bit for each pair and side of the facets.
+std::vector<Patch> find_patches(const TetMesh& mesh, const LabelPairs& pairs) {
+  std::vector<Patch> patches;
+  std::vector<unsigned> sides_of_pair(pairs.size());
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    sides_of_pair[pairs.number_of(mesh.facet_labels[f])] |= 1u << number_of_side(side_of_facet(mesh, f));
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+    if ((sides_of_pair[pair] >> kNumSides & 1) != 0) patches.push_back({pair, 0});
+    for (std::size_t side = 0; side < kNumSides; ++side)
+      if ((sides_of_pair[pair] >> side & 1) != 0)
+        patches.push_back({pair, static_cast<SideMask>(1u << side)});
+  }
+  return patches;
+}
+
+}  // namespace
+
+std::string name_of_side(std::size_t side) { return std::string("box ") + kSideNames[side]; }
 
 MeshSets::MeshSets(const TetMesh& mesh)
     : names(mesh.labels),
@@ -12,8 +38,19 @@ MeshSets::MeshSets(const TetMesh& mesh)
                      [&](std::size_t i) { return mesh.cell_labels[i]; }),
       facets_of_pair(mesh.facets.size(), pairs.size(),
                      [&](std::size_t i) { return pairs.number_of(mesh.facet_labels[i]); }),
+      patches(find_patches(mesh, pairs)),
+      facets_of_patch(mesh.facets.size(), patches.size(),
+                      [&](std::size_t i) {
+                        const Patch patch{pairs.number_of(mesh.facet_labels[i]), side_of_facet(mesh, i)};
+                        return static_cast<std::size_t>(
+                            std::lower_bound(patches.begin(), patches.end(), patch) - patches.begin());
+                      }),
+      facets_of_side(mesh.facets.size(), kNumSides + 1,
+                     [&](std::size_t i) { return number_of_side(side_of_facet(mesh, i)); }),
       edges_of_line(mesh.lines.edges.size(), mesh.lines.labels_of_line.size(),
                     [&](std::size_t i) { return mesh.lines.line_of_edge[i]; }) {
+  for (std::size_t side = 0; side < kNumSides; ++side)
+    if (!facets_of_side[side].empty()) sides.push_back(side);
   for (const auto& labels : mesh.lines.labels_of_line) line_names.push_back(names.of_line(labels));
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     if (!cells_of_label[i].empty()) volumes.push_back(static_cast<LabelIndex>(i));
@@ -23,6 +60,11 @@ MeshSets::MeshSets(const TetMesh& mesh)
   });
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     volume_tags.push_back(static_cast<std::int32_t>(values_are_tags ? mesh.labels[i].value : i));
+}
+
+std::string MeshSets::name_of(const Patch& patch) const {
+  const std::string of_pair = names.of_pair(pairs[patch.pair]);
+  return patch.side == 0 ? of_pair : of_pair + " " + name_of_side(number_of_side(patch.side));
 }
 
 std::vector<std::uint32_t> vertices_of_line(const MeshSets& sets, const MeshLines& lines, std::size_t line) {

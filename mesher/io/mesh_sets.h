@@ -2,6 +2,7 @@
 // edges of each line.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,17 +13,38 @@
 
 namespace podm {
 
+/// The facets of a pair of labels on one side of a flat box, or on none.
+struct Patch {
+  std::size_t pair = 0;
+  SideMask side = 0;  ///< with one bit at most
+
+  auto operator<=>(const Patch&) const = default;
+};
+
+/// The name of the set of all facets on a side: "box i-".
+std::string name_of_side(std::size_t side);
+
 struct MeshSets {
   explicit MeshSets(const TetMesh& mesh);
 
   LabelNames names;
   LabelPairs pairs;
-  Grouping cells_of_label, facets_of_pair, edges_of_line;
+  Grouping cells_of_label, facets_of_pair;
+  std::vector<LabelIndex> volumes;  ///< the labels that have cells
+  /// The patches that have facets, sorted. With an open box they are the pairs. Each facet is in one patch.
+  std::vector<Patch> patches;
+  Grouping facets_of_patch;
+  std::vector<std::size_t> sides;  ///< the sides that have facets
+  Grouping facets_of_side;         ///< by side; the last group is on none
+  Grouping edges_of_line;
   std::vector<std::string> line_names;  ///< "liver|kidney|outside", one per line
-  std::vector<LabelIndex> volumes;      ///< the labels that have cells
   /// The tag of each label: its value if the values of all `volumes` are positive 32-bit integers, otherwise
   /// its position.
   std::vector<std::int32_t> volume_tags;
+  /// Returns the name of a patch: "kidney|outside", or "kidney|outside box i-".
+  std::string name_of(const Patch& patch) const;
+  /// Returns the tag of a side, after those of all pairs.
+  std::int32_t side_tag(std::size_t side) const { return surface_tag(pairs.size() + side); }
   /// Returns the tag of a pair; tags count from 1.
   static std::int32_t surface_tag(std::size_t pair) { return static_cast<std::int32_t>(pair) + 1; }
   /// Returns the tag of a line; tags count from 1.

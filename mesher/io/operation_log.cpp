@@ -104,6 +104,7 @@ class Reader {
       json.at("mesh_sha256").get_to(head.mesh_sha256);
       if (json.contains("ranks")) take_ranks(json["ranks"], head);
       if (json.contains("smoothing_mm")) take_smoothing(json["smoothing_mm"], head);
+      head.is_box_flat = json.value("is_box_flat", false);
       return head;
     } catch (const nlohmann::ordered_json::exception& error) {
       fail(fmt::format("the description of the run: {}", error.what()));
@@ -225,6 +226,7 @@ void OperationLogWriter::finish(const OperationLogHead& head) {
                               {"side_mm", head.cubes->side_mm},
                               {"block", head.cubes->block},
                               {"known", head.cubes->known}};
+  if (head.is_box_flat) json["is_box_flat"] = true;
   if (head.smoothing_mm > 0) json["smoothing_mm"] = head.smoothing_mm;
   file_->file->put(BatchSizes{});
   file_->file->write(json.dump() + "\n");

@@ -1,10 +1,12 @@
 // Abaqus input (.inp) for Abaqus and CalculiX: nodes, one element set of C3D4 per label, one element surface
-// per label pair, one node set per line. The surface "liver-kidney" consists of sides of liver cells. Numbers
-// of nodes and elements are positions plus one. Format: Abaqus Keywords Guide, *NODE, *ELEMENT, *SURFACE.
+// per label pair and one per side of a flat box, "box_i-", one node set per line. The surface "liver-kidney"
+// consists of sides of liver cells. Numbers of nodes and elements are positions plus one. Format: Abaqus
+// Keywords Guide, *NODE, *ELEMENT, *SURFACE.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <set>
+#include <span>
 
 #include "files/atomic_file.h"
 #include "io/facet_sides.h"
@@ -73,6 +75,8 @@ class AbaqusWriter {
       volume_names_.add(sets_.names[label], static_cast<std::int32_t>(mesh.labels[label].value));
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
       surface_names_.add(sets_.names.of_pair(sets_.pairs[i]), MeshSets::surface_tag(i));
+    for (const std::size_t side : sets_.sides)
+      side_names_.push_back(surface_names_.add(name_of_side(side), sets_.side_tag(side)));
     for (std::size_t line = 0; line < sets_.line_names.size(); ++line)
       line_names_.add(sets_.line_names[line], MeshSets::line_tag(line));
   }
@@ -157,13 +161,16 @@ class AbaqusWriter {
     // S1 has vertices 1 2 3, S2 1 4 2, S3 2 4 3, S4 3 4 1.
     constexpr std::array<int, 4> kSideOpposite{3, 4, 2, 1};
     const std::vector<FacetSide> sides = find_facet_sides(mesh_);
-    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
-      text_.print(FMT_COMPILE("*SURFACE, TYPE=ELEMENT, NAME={}\n"), surface_names_[i]);
-      for (const std::uint32_t facet : sets_.facets_of_pair[i]) {
+    const auto print = [&](const std::string& name, std::span<const std::uint32_t> facets) {
+      text_.print(FMT_COMPILE("*SURFACE, TYPE=ELEMENT, NAME={}\n"), name);
+      for (const std::uint32_t facet : facets) {
         const FacetSide& side = sides[facet];
         text_.print(FMT_COMPILE("{}, S{}\n"), std::size_t{side.cell} + 1, kSideOpposite[side.opposite]);
       }
-    }
+    };
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) print(surface_names_[i], sets_.facets_of_pair[i]);
+    for (std::size_t i = 0; i < sets_.sides.size(); ++i)
+      print(side_names_[i], sets_.facets_of_side[sets_.sides[i]]);
   }
 
   void print_lines() {
@@ -182,6 +189,7 @@ class AbaqusWriter {
   TextFile text_;
   const MeshSets sets_;
   SetNames volume_names_, surface_names_, line_names_;
+  std::vector<std::string> side_names_;  // of sets_.sides
   Losses losses_;
 };
 

@@ -1,13 +1,14 @@
-// Exodus II: one element block per label, one side set per label pair, one node set per line, all with the
-// names and numbers of Gmsh files. Elements are numbered block after block. Information records list the
-// space, labels and pairs. The arrays are those that the Exodus library makes for a mesh without fields in a
-// netCDF file. Format: "EXODUS: A Finite Element Data Model", appendix "Implementation of EXODUS with
-// netCDF".
+// Exodus II: one element block per label, one side set per label pair and per side of a flat box, one node
+// set per line, all with the names and numbers of Gmsh files. Elements are numbered block after block.
+// Information records list the space, labels and pairs. The arrays are those that the Exodus library makes
+// for a mesh without fields in a netCDF file. Format: "EXODUS: A Finite Element Data Model", appendix
+// "Implementation of EXODUS with netCDF".
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 
 #include "files/atomic_file.h"
 #include "files/big_endian.h"
@@ -37,7 +38,9 @@ class ExodusWriter {
       block_names_.push_back(cut(sets_.names[label]));
     }
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
-      side_set_names_.push_back(cut(sets_.names.of_pair(sets_.pairs[i])));
+      add_side_set(MeshSets::surface_tag(i), sets_.names.of_pair(sets_.pairs[i]), sets_.facets_of_pair[i]);
+    for (const std::size_t side : sets_.sides)
+      add_side_set(sets_.side_tag(side), name_of_side(side), sets_.facets_of_side[side]);
     for (const std::string& name : sets_.line_names) node_set_names_.push_back(cut(name));
   }
 
@@ -57,7 +60,7 @@ class ExodusWriter {
     add_points(name_bytes);
     add_information();
     add_blocks(name_bytes);
-    if (sets_.pairs.size() > 0) add_side_sets(name_bytes);
+    if (!side_sets_.empty()) add_side_sets(name_bytes);
     if (!node_set_names_.empty()) add_node_sets(name_bytes);
     file_.add_variable("time_whole", NetcdfFile::kDouble, {time_step}, {});
     file_.write(file);
@@ -66,6 +69,16 @@ class ExodusWriter {
 
  private:
   using Dimension = NetcdfFile::Dimension;
+
+  struct SideSet {
+    std::int32_t id;
+    std::span<const std::uint32_t> facets;
+  };
+
+  void add_side_set(std::int32_t id, const std::string& name, std::span<const std::uint32_t> facets) {
+    side_sets_.push_back({id, facets});
+    side_set_names_.push_back(cut(name));
+  }
 
   std::string cut(const std::string& name) {
     if (name.size() > kMostNameBytes)
@@ -136,14 +149,14 @@ class ExodusWriter {
   }
 
   void add_side_sets(Dimension name_bytes) {
-    const Dimension num_sets = file_.add_dimension("num_side_sets", sets_.pairs.size());
+    const Dimension num_sets = file_.add_dimension("num_side_sets", side_sets_.size());
     std::vector<std::int32_t> ids;
-    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) ids.push_back(MeshSets::surface_tag(i));
+    for (const SideSet& set : side_sets_) ids.push_back(set.id);
     file_.add_ints("ss_status", num_sets, std::vector<std::int32_t>(ids.size(), 1));
     file_.add_ints("ss_prop1", num_sets, ids, {{"name", "ID"}});
     file_.add_texts("ss_names", num_sets, name_bytes, side_set_names_);
-    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
-      const auto facets = sets_.facets_of_pair[i];
+    for (std::size_t i = 0; i < side_sets_.size(); ++i) {
+      const auto facets = side_sets_[i].facets;
       const Dimension num_sides = file_.add_dimension(fmt::format("num_side_ss{}", i + 1), facets.size());
       file_.add_variable(fmt::format("elem_ss{}", i + 1), NetcdfFile::kInt, {num_sides},
                          [this, facets](AtomicFile& file) {
@@ -189,6 +202,7 @@ class ExodusWriter {
   const MeshSets sets_;
   const std::vector<FacetSide> sides_;
   std::vector<std::size_t> first_element_;  // of each block
+  std::vector<SideSet> side_sets_;          // of pairs, then of sides of a flat box
   std::vector<std::string> block_names_, side_set_names_, node_set_names_;
   std::size_t longest_name_ = kShortName;
   Losses losses_;

@@ -1,10 +1,12 @@
 // Gmsh MSH 4.1, binary. Every label is a volume, every label pair a surface and every line a curve. Each is a
-// discrete entity with a physical group of the same name. Elements and nodes are stored in one block per
-// entity.
+// discrete entity with a physical group of the same name. With a flat box, the part of a surface on a side is
+// an entity of its own, which is in the groups of the pair and of the side ("box i-"). Elements and nodes are
+// stored in one block per entity.
 //
 // Tags: the tag of a volume entity is its position in TetMesh::labels, and its physical group is the label
-// value (for all volumes the position, if one value is not a positive int). The tag of a surface entity and
-// of its group is the number of the pair, and likewise for curves. Node tags are vertex positions plus one.
+// value (for all volumes the position, if one value is not a positive int). The tag of a surface entity is
+// the number of its patch, that of its group the number of the pair. The tag of a curve and of its group is
+// the number of the line. Node tags are vertex positions plus one.
 // Format: Gmsh reference manual, "MSH file format".
 #include <fmt/format.h>
 
@@ -76,7 +78,9 @@ class GmshWriter {
   }
 
   void write_physical_names() {
-    file_.write(fmt::format("$PhysicalNames\n{}\n", num_entities()));
+    const std::size_t num_groups =
+        num_lines() + sets_.pairs.size() + sets_.sides.size() + sets_.volumes.size();
+    file_.write(fmt::format("$PhysicalNames\n{}\n", num_groups));
     for (std::size_t line = 0; line < num_lines(); ++line) {
       file_.write(
           fmt::format("{} {} \"{}\"\n", kCurveDimension, MeshSets::line_tag(line), sets_.line_names[line]));
@@ -85,6 +89,8 @@ class GmshWriter {
       file_.write(fmt::format("{} {} \"{}\"\n", kSurfaceDimension, surface_tag(i),
                               sets_.names.of_pair(sets_.pairs[i])));
     }
+    for (const std::size_t side : sets_.sides)
+      file_.write(fmt::format("{} {} \"{}\"\n", kSurfaceDimension, sets_.side_tag(side), name_of_side(side)));
     for (const LabelIndex label : sets_.volumes) {
       file_.write(fmt::format("{} {} \"{}\"\n", kVolumeDimension, physical_tag(label), sets_.names[label]));
     }
@@ -92,48 +98,56 @@ class GmshWriter {
   }
 
   std::size_t num_lines() const { return sets_.line_names.size(); }
-  std::size_t num_entities() const { return num_lines() + sets_.pairs.size() + sets_.volumes.size(); }
+  std::size_t num_entities() const { return num_lines() + sets_.patches.size() + sets_.volumes.size(); }
   void put_size(std::size_t size) { file_.put(std::uint64_t{size}); }
 
   void write_entities() {
     file_.write("$Entities\n");
-    for (const std::size_t count : {std::size_t{0}, num_lines(), sets_.pairs.size(), sets_.volumes.size()})
+    for (const std::size_t count : {std::size_t{0}, num_lines(), sets_.patches.size(), sets_.volumes.size()})
       put_size(count);
     for (std::size_t line = 0; line < num_lines(); ++line) {
       Box box;
       for (const std::uint32_t edge : sets_.edges_of_line[line])
         for (const std::uint32_t vertex : mesh_.lines.edges[edge]) box.include(mesh_.vertices[vertex]);
-      put_entity(MeshSets::line_tag(line), box, MeshSets::line_tag(line), {});
+      put_entity(MeshSets::line_tag(line), box, {MeshSets::line_tag(line)}, {});
     }
     std::vector<Box> volume_boxes(mesh_.labels.size());  // boxes of its surfaces, which close the volume
-    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+    for (std::size_t i = 0; i < sets_.patches.size(); ++i) {
       Box box;
-      for (const std::uint32_t facet : sets_.facets_of_pair[i])
+      for (const std::uint32_t facet : sets_.facets_of_patch[i])
         for (const std::uint32_t vertex : mesh_.facets[facet]) box.include(mesh_.vertices[vertex]);
-      for (const LabelIndex label : sets_.pairs[i]) {
+      for (const LabelIndex label : pair_of_patch(i)) {
         volume_boxes[label].include(box.low);
         volume_boxes[label].include(box.high);
       }
-      put_entity(surface_tag(i), box, surface_tag(i), {});
+      put_entity(surface_tag(i), box, groups_of_patch(i), {});
     }
     for (const LabelIndex label : sets_.volumes) {
       std::vector<std::int32_t> signed_surfaces;  // positive if the normal points out of the volume
-      for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
-        if (sets_.pairs[i][1] == label) signed_surfaces.push_back(surface_tag(i));
-        if (sets_.pairs[i][0] == label) signed_surfaces.push_back(-surface_tag(i));
+      for (std::size_t i = 0; i < sets_.patches.size(); ++i) {
+        if (pair_of_patch(i)[1] == label) signed_surfaces.push_back(surface_tag(i));
+        if (pair_of_patch(i)[0] == label) signed_surfaces.push_back(-surface_tag(i));
       }
-      put_entity(label, volume_boxes[label], physical_tag(label), signed_surfaces);
+      put_entity(label, volume_boxes[label], {physical_tag(label)}, signed_surfaces);
     }
     file_.write("\n$EndEntities\n");
   }
 
-  void put_entity(std::int32_t tag, const Box& box, std::int32_t physical,
+  const LabelPair& pair_of_patch(std::size_t i) const { return sets_.pairs[sets_.patches[i].pair]; }
+  std::vector<std::int32_t> groups_of_patch(std::size_t i) const {
+    const auto [pair, side] = sets_.patches[i];
+    std::vector<std::int32_t> groups{surface_tag(pair)};
+    if (side != 0) groups.push_back(sets_.side_tag(static_cast<std::size_t>(std::countr_zero(side))));
+    return groups;
+  }
+
+  void put_entity(std::int32_t tag, const Box& box, const std::vector<std::int32_t>& physical,
                   const std::vector<std::int32_t>& boundary) {
     file_.put(tag);
     file_.put(box.low);
     file_.put(box.high);
-    put_size(1);
-    file_.put(physical);
+    put_size(physical.size());
+    for (const std::int32_t group : physical) file_.put(group);
     put_size(boundary.size());
     for (const std::int32_t surface : boundary) file_.put(surface);
   }
@@ -143,14 +157,14 @@ class GmshWriter {
   Grouping group_vertices() const {
     // Groups: lines, then surfaces, then labels.
     const auto first_surface = static_cast<std::uint32_t>(num_lines());
-    const auto first_volume = static_cast<std::uint32_t>(num_lines() + sets_.pairs.size());
+    const auto first_volume = static_cast<std::uint32_t>(num_lines() + sets_.patches.size());
     std::vector<std::uint32_t> group(mesh_.vertices.size(), first_volume);
     for (std::size_t i = 0; i < mesh_.cells.size(); ++i)
       for (const std::uint32_t vertex : mesh_.cells[i]) group[vertex] = first_volume + mesh_.cell_labels[i];
-    for (std::uint32_t pair = 0; pair < sets_.pairs.size(); ++pair)
-      for (const std::uint32_t facet : sets_.facets_of_pair[pair])
+    for (std::uint32_t patch = 0; patch < sets_.patches.size(); ++patch)
+      for (const std::uint32_t facet : sets_.facets_of_patch[patch])
         for (const std::uint32_t vertex : mesh_.facets[facet])
-          group[vertex] = std::min(group[vertex], first_surface + pair);
+          group[vertex] = std::min(group[vertex], first_surface + patch);
     for (std::size_t edge = 0; edge < mesh_.lines.edges.size(); ++edge)
       for (const std::uint32_t vertex : mesh_.lines.edges[edge])
         group[vertex] = std::min(group[vertex], mesh_.lines.line_of_edge[edge]);
@@ -177,7 +191,7 @@ class GmshWriter {
 
   // Puts the dimension and the tag of an entity.
   void put_entity_of_group(std::size_t group) {
-    const std::size_t first_surface = num_lines(), first_volume = first_surface + sets_.pairs.size();
+    const std::size_t first_surface = num_lines(), first_volume = first_surface + sets_.patches.size();
     if (group < first_surface) {
       file_.put(kCurveDimension);
       file_.put(MeshSets::line_tag(group));
@@ -193,8 +207,8 @@ class GmshWriter {
   void write_elements() {
     file_.write("$Elements\n");
     put_section_head(num_entities(), mesh_.facets.size() + mesh_.cells.size() + mesh_.lines.edges.size());
-    for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
-      put_elements(kSurfaceDimension, surface_tag(i), kGmshTriangle, sets_.facets_of_pair[i], mesh_.facets,
+    for (std::size_t i = 0; i < sets_.patches.size(); ++i)
+      put_elements(kSurfaceDimension, surface_tag(i), kGmshTriangle, sets_.facets_of_patch[i], mesh_.facets,
                    1);
     for (const LabelIndex label : sets_.volumes) {
       put_elements(kVolumeDimension, label, kGmshTetrahedron, sets_.cells_of_label[label], mesh_.cells,

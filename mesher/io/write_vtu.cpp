@@ -179,6 +179,12 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
         "UInt32", side == 0 ? "label_a" : "label_b", mesh.facets.size(),
         [&mesh, side](std::size_t i) { return mesh.labels[mesh.facet_labels[i][side]].value; }));
   }
+  if (mesh.is_box_flat)
+    grid.cell_data.push_back(
+        make_array<std::uint8_t>("UInt8", "box_side", mesh.facets.size(), [&mesh](std::size_t i) {
+          const SideMask side = side_of_facet(mesh, i);
+          return side == 0 ? 0 : std::countr_zero(side) + 1;
+        }));
   return grid;
 }
 

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <limits>
 
 #include "io/hdf5_file.h"
 #include "io/mesh_formats.h"
+#include "io/mesh_sets.h"
 #include "io/promises.h"
 #include "io/xml_text.h"
 
@@ -73,6 +75,12 @@ void write_tables(Hdf5File& file, const TetMesh& mesh, const LabelPairs& pairs) 
       "pairs/labels", pairs.size(), 2,
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[pairs[i][side]].value; });
   file.write_strings("pairs/name", pair_names);
+  if (mesh.is_box_flat) {
+    std::vector<std::string> side_names;
+    for (std::size_t side = 0; side < kNumSides; ++side) side_names.push_back(name_of_side(side));
+    file.make_group("sides");
+    file.write_strings("sides/name", side_names);
+  }
   if (!has_lines(mesh)) return;
   std::vector<std::string> line_names;
   for (const auto& labels : mesh.lines.labels_of_line) line_names.push_back(names.of_line(labels));
@@ -107,6 +115,7 @@ struct GridOfXdmf {
   const char *name, *topology, *arrays, *attribute, *values;
   std::uint64_t num_cells;
   int vertices_per_cell;
+  std::string more = {};  // attributes
 };
 
 std::string grid_text(const GridOfXdmf& grid, const XdmfPart& part, const std::string& file) {
@@ -115,11 +124,18 @@ std::string grid_text(const GridOfXdmf& grid, const XdmfPart& part, const std::s
       "<Grid Name=\"{}\" GridType=\"Uniform\">\n"
       "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">{}</Topology>\n"
       "<Geometry GeometryType=\"XYZ\">{}</Geometry>\n"
-      "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
+      "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute>\n{}</Grid>\n",
       grid.name, grid.topology, grid.num_cells, grid.vertices_per_cell,
       data_item(file, grid.arrays, corners, "Int", is_wide(part) ? 8 : 4),
       data_item(file, "points", fmt::format("{} 3", part.total_vertices), "Float", 8), grid.attribute,
-      data_item(file, grid.values, fmt::format("{}", grid.num_cells), "Int", 4));
+      data_item(file, grid.values, fmt::format("{}", grid.num_cells), "Int", 4), grid.more);
+}
+
+// The number of the side of each facet, from 1; 0: none.
+std::string sides_attribute(const XdmfPart& part, const std::string& file) {
+  if (!part.mesh.is_box_flat) return "";
+  return fmt::format("<Attribute Name=\"side\" AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute>\n",
+                     data_item(file, "facet_sides", fmt::format("{}", part.total_facets), "Int", 4));
 }
 
 std::string information(const std::string& name, const std::string& value) {
@@ -134,7 +150,9 @@ std::string xdmf_text(const std::string& path, const XdmfPart& part) {
          information("space", to_string(part.mesh.space)) + promises +
          grid_text({"mesh", "Tetrahedron", "cells", "label", "cell_labels", part.total_cells, 4}, part,
                    file) +
-         grid_text({"facets", "Triangle", "facets", "pair", "facet_tags", part.total_facets, 3}, part, file) +
+         grid_text({"facets", "Triangle", "facets", "pair", "facet_tags", part.total_facets, 3,
+                    sides_attribute(part, file)},
+                   part, file) +
          (has_lines(part.mesh) ? grid_text({"lines", "PolyLine", "lines", "line", "line_tags",
                                             part.mesh.lines.edges.size(), 2},
                                            part, file)
@@ -175,6 +193,8 @@ XdmfArrays create_xdmf_arrays(const std::string& file, const std::string& path, 
   arrays.facets = made.make_dataset("facets", id_type, part.total_facets, 3);
   arrays.facet_tags = made.make_dataset("facet_tags", H5T_STD_I32LE, part.total_facets, 0);
   arrays.facet_labels = made.make_dataset("facet_labels", H5T_STD_U32LE, part.total_facets, 2);
+  if (part.mesh.is_box_flat)
+    arrays.facet_sides = made.make_dataset("facet_sides", H5T_STD_I32LE, part.total_facets, 0);
   if (has_lines(part.mesh)) {
     const std::size_t num_edges = part.mesh.lines.edges.size();
     arrays.lines = made.make_dataset("lines", id_type, num_edges, 2);
@@ -209,6 +229,12 @@ void write_xdmf_part(const std::string& file, const std::string& path, const Xdm
   write_rows<std::uint32_t>(
       to, arrays.facet_labels, part.first_facet, mesh.facets.size(),
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[mesh.facet_labels[i][side]].value; });
+  if (arrays.facet_sides)
+    write_rows<std::int32_t>(to, *arrays.facet_sides, part.first_facet, mesh.facets.size(),
+                             [&](std::uint64_t i, std::uint64_t) {
+                               const SideMask side = side_of_facet(mesh, i);
+                               return side == 0 ? 0 : std::countr_zero(side) + 1;
+                             });
   if (has_lines(mesh)) write_lines(to, part, arrays);
   to.finish();
 }

@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct XdmfPart {
 /// The places of the arrays of the whole mesh. Meshes of several pieces have no lines.
 struct XdmfArrays {
   RowsInFile points, cells, cell_labels, facets, facet_tags, facet_labels, lines, line_tags;
+  std::optional<RowsInFile> facet_sides = {};  ///< if the box is flat
 };
 
 /// Returns "x.h5" for "x.xdmf".

@@ -200,11 +200,24 @@ std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
 BrickNeighborhoods::BrickNeighborhoods(const LabelImage& image, const Voxel& brick) {
   const int x = 4 * brick.i - 1, y = 4 * brick.j - 1, z = 4 * brick.k - 1;
   labels_.fill(kBackground);
+  if (image.is_box_flat) {
+    read_clamped(image, {x, y, z});
+    return;
+  }
   const int begin = std::max(0, -x), end = std::min(6, image.size[0] - x);
   for (int k = std::max(0, -z); k < std::min(6, image.size[2] - z); ++k)
     for (int j = std::max(0, -y); j < std::min(6, image.size[1] - y); ++j)
       std::copy_n(&image.voxels[image.index(x + begin, y + j, z + k)], end - begin,
                   &labels_[static_cast<std::size_t>(6 * k + j) * kRow + static_cast<std::size_t>(begin)]);
+}
+
+void BrickNeighborhoods::read_clamped(const LabelImage& image, const Voxel& first) {
+  const auto inside = [&](int at, std::size_t axis) { return std::clamp(at, 0, image.size[axis] - 1); };
+  for (int k = 0; k < 6; ++k)
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i)
+        labels_[static_cast<std::size_t>(6 * k + j) * kRow + static_cast<std::size_t>(i)] =
+            image.voxels[image.index(inside(first.i + i, 0), inside(first.j + j, 1), inside(first.k + k, 2))];
 }
 
 Neighborhood BrickNeighborhoods::around(unsigned place) const {

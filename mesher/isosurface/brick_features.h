@@ -83,6 +83,8 @@ class BrickNeighborhoods {
   LabelIndex label(unsigned place) const { return labels_[first_around(place) + 7 * kRow + 1]; }
 
  private:
+  // As the constructor, with the labels at the border instead of background outside.
+  void read_clamped(const LabelImage& image, const Voxel& first);
   static constexpr std::size_t kRow = 8;  // leaves room to read four labels from each place
   static std::size_t first_around(unsigned place) {
     return (6 * (place >> 4) + (place >> 2 & 3)) * kRow + (place & 3);

@@ -23,6 +23,7 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       weights_(std::move(weights)),
       grid_(image, reads, transform_.get()),
       features_(*transform_, reads),
+      box_(image.is_box_flat ? std::optional(BoxPlanes(image)) : std::nullopt),
       from_voxels_(voxels_to_working(image)),
       to_voxels_(inverse(from_voxels_)),
       spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
@@ -74,7 +75,7 @@ LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, cons
 }
 
 template <class Reads>
-LabelAndBound Oracle<Reads>::label_and_bound(const Point& p, double radius) const {
+LabelAndBound Oracle<Reads>::label_and_bound_of_image(const Point& p, double radius) const {
   const Point u = to_voxels(p);
   if (!is_inside(u)) return {kBackground, std::max(bound_from_outside(u, radius), 0.0)};
   const Voxel v = nearest_voxel(u);
@@ -83,7 +84,7 @@ LabelAndBound Oracle<Reads>::label_and_bound(const Point& p, double radius) cons
 }
 
 template <class Reads>
-double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const {
+double Oracle<Reads>::bound_of_image(const Point& p, double radius) const {
   return std::max(clearance(to_voxels(p), radius), 0.0);
 }
 
@@ -127,12 +128,12 @@ template LabelIndex Oracle<NoReads>::label_by_block(const Point&) const;
 template LabelIndex Oracle<CountedReads>::label_by_block(const Point&) const;
 template LabelIndex Oracle<NoReads>::label_off_surface(const Point&, const Voxel&,
                                                        const StoredFeature&) const;
-template LabelAndBound Oracle<NoReads>::label_and_bound(const Point&, double) const;
+template LabelAndBound Oracle<NoReads>::label_and_bound_of_image(const Point&, double) const;
 template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&,
                                                             const StoredFeature&) const;
-template LabelAndBound Oracle<CountedReads>::label_and_bound(const Point&, double) const;
-template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
-template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
+template LabelAndBound Oracle<CountedReads>::label_and_bound_of_image(const Point&, double) const;
+template double Oracle<NoReads>::bound_of_image(const Point&, double) const;
+template double Oracle<CountedReads>::bound_of_image(const Point&, double) const;
 template double Oracle<NoReads>::bound_from_outside(const Point&, double) const;
 template double Oracle<CountedReads>::bound_from_outside(const Point&, double) const;
 template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&, const StoredFeature&,

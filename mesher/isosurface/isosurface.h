@@ -18,6 +18,13 @@
 // block with an edge between two labels. The ends of the edge are surface voxels. The point is within *one*
 // voxel, along every axis, of their centers. Half a voxel beyond the grid, background still ties, as voxels
 // there have the weights of their neighbors inside.
+//
+// With a flat box (LabelImage::is_box_flat) the label function is that of the image clamped to the outermost
+// voxel centers: inside the outer faces of the outermost voxels, the *box*, it is as if these voxels went on.
+// Outside the box everything is background. The isosurface then consists of the interfaces in the box and of
+// those parts of its sides that have a label. In the outermost half voxel the function does not change along
+// the axis, so that the lemma holds there if it holds at the clamped point. Each query branches once: an open
+// box takes none of the paths in isosurface_box.cpp.
 #pragma once
 
 #include <algorithm>
@@ -27,6 +34,7 @@
 
 #include "geometry/affine.h"
 #include "geometry/point.h"
+#include "isosurface/box_planes.h"
 #include "isosurface/feature_transform.h"
 #include "isosurface/isosurface_block.h"
 #include "isosurface/voxel_weights.h"
@@ -39,6 +47,10 @@ struct NearPoint {
   Point point;  // accurate to about a hundredth of a voxel
   Voxel surface_voxel;
   bool is_midpoint;  // `point` is where the label changes between two neighboring voxel centers
+
+  /// False for the voxel kNoVoxel: only a side of the box ends the label.
+  bool is_on_interface() const { return surface_voxel.i >= 0; }
+  static constexpr Voxel kNoVoxel{-1, -1, -1};
 };
 
 /// Up to four balls of one radius. A near point in one of them is good enough: the search for a nearer one
@@ -70,12 +82,22 @@ class Oracle {
          std::shared_ptr<const VoxelWeights> weights, const Reads& reads);
   const LabelImage& image() const { return *image_; }
   const FeatureTransform& transform() const { return *transform_; }
+  /// None unless the box is flat.
+  const std::optional<BoxPlanes>& box() const { return box_; }
 
   /// The label of greatest trilinear weight. Away from any label change this is a single look-up.
-  LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
+  LabelIndex label_at(const Point& p) const {
+    if (box_) [[unlikely]]
+      return label_in_box(p);
+    return label_at_voxels(to_voxels(p));
+  }
 
   /// label_at() and distance_lower_bound() of one point, for less than both.
-  LabelAndBound label_and_bound(const Point& p, double radius) const;
+  LabelAndBound label_and_bound(const Point& p, double radius) const {
+    if (box_) [[unlikely]]
+      return label_and_bound_in_box(p, radius);
+    return label_and_bound_of_image(p, radius);
+  }
 
   /// Prefetches the cache lines that the queries about p read first.
   void prefetch(const Point& p) const {
@@ -89,7 +111,11 @@ class Oracle {
   /// A lower bound of the distance from p to the isosurface, mm; 0 if p may lie on it. This is a look-up,
   /// followed by a search only if the search is needed to decide if the distance exceeds `radius`. Inside the
   /// grid the bound exceeds `radius` if the distance exceeds it by two diagonals of a voxel.
-  double distance_lower_bound(const Point& p, double radius) const;
+  double distance_lower_bound(const Point& p, double radius) const {
+    if (box_) [[unlikely]]
+      return label_and_bound_in_box(p, radius).bound;
+    return bound_of_image(p, radius);
+  }
 
   /// The isosurface point nearest to p, found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest. On smooth
@@ -98,17 +124,69 @@ class Oracle {
   /// and 5 it exceeds 0.55 of the longest side in 1 % of cases, and never 0.75 of it. From far outside the
   /// grid it may be 4 sides. The search may return one of the first points that it finds, if `cover` contains
   /// it.
-  std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const;
+  std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const {
+    if (box_) [[unlikely]]
+      return near_point_in_box(p, radius, cover);
+    return near_point_of_image(p, radius, cover);
+  }
   /// The near point of p, moved to less than 1e-6 voxel from the isosurface. It may lie slightly beyond
   /// `radius`.
-  Point polished(const NearPoint& near, const Point& p) const;
+  SurfacePoint polished(const NearPoint& near, const Point& p) const {
+    if (box_) [[unlikely]]
+      return polished_in_box(near, p);
+    return {polished_on_interface(near, p)};
+  }
 
   /// The point where the label changes along segment ab, searched from a; none if there is no change. If the
   /// labels at a and b differ, a point is always returned. Double crossings are found down to 1e-6 of the
   /// segment's part in a block.
-  std::optional<Point> segment_intersection(const Point& a, const Point& b) const;
+  std::optional<SurfacePoint> segment_intersection(const Point& a, const Point& b) const {
+    if (box_) [[unlikely]]
+      return intersection_in_box(a, b);
+    return intersection_of_image(a, b);
+  }
+  /// With a flat box: the point at which segment ab leaves a label through a side of the box, if just one end
+  /// is in the box.
+  std::optional<SurfacePoint> exit_through_side(const Point& a, const Point& b) const;
+  /// For a point on a side that ends a label: a point of an edge of the box that ends it, too, if one is
+  /// within `reach_mm`, otherwise the point itself.
+  SurfacePoint moved_onto_edge(const SurfacePoint& z, double reach_mm) const;
+  /// The same, or else a point of the curve in which an interface with background meets the side.
+  SurfacePoint settled_on_edge(const SurfacePoint& z, double reach_mm) const;
   /// True if the same search finds a change along ab. The label at both ends must be `label`.
-  bool is_crossed(const Point& a, const Point& b, LabelIndex label) const;
+  bool is_crossed(const Point& a, const Point& b, LabelIndex label) const {
+    if (box_) [[unlikely]]
+      return intersection_in_box(a, b).has_value();
+    return is_crossed_in_image(a, b, label);
+  }
+
+  /// The queries of an oracle whose box is open, for callers that know this. They do not branch for it.
+  class OfOpenBox {
+   public:
+    explicit OfOpenBox(const Oracle& oracle) : oracle_(oracle) {}
+    LabelIndex label_at(const Point& p) const { return oracle_.label_at_voxels(oracle_.to_voxels(p)); }
+    LabelAndBound label_and_bound(const Point& p, double radius) const {
+      return oracle_.label_and_bound_of_image(p, radius);
+    }
+    double distance_lower_bound(const Point& p, double radius) const {
+      return oracle_.bound_of_image(p, radius);
+    }
+    std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const {
+      return oracle_.near_point_of_image(p, radius, cover);
+    }
+    SurfacePoint polished(const NearPoint& near, const Point& p) const {
+      return {oracle_.polished_on_interface(near, p)};
+    }
+    std::optional<SurfacePoint> segment_intersection(const Point& a, const Point& b) const {
+      return oracle_.intersection_of_image(a, b);
+    }
+    bool is_crossed(const Point& a, const Point& b, LabelIndex label) const {
+      return oracle_.is_crossed_in_image(a, b, label);
+    }
+
+   private:
+    const Oracle& oracle_;
+  };
 
  protected:
   const LabelImage* image_;
@@ -165,6 +243,26 @@ class Oracle {
   Point clamped_to_grid(const Point& u) const {
     return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
   }
+  // The queries with a flat box (isosurface_box.cpp).
+  LabelIndex label_clamped(const Point& p) const { return label_at_voxels(clamped_to_grid(to_voxels(p))); }
+  [[gnu::noinline]] LabelIndex label_in_box(const Point& p) const;
+  [[gnu::noinline]] LabelAndBound label_and_bound_in_box(const Point& p, double radius) const;
+  [[gnu::noinline]] std::optional<NearPoint> near_point_in_box(const Point& p, double radius,
+                                                               const Cover& cover) const;
+  std::optional<NearPoint> near_interface(const Point& p, double radius, const Cover& cover) const;
+  Point beside_on_side(const SurfacePoint& near, const Point& p) const;
+  std::optional<SurfacePoint> intersection_in_box(const Point& a, const Point& b) const;
+  std::optional<SurfacePoint> intersection_from_outside(const Point& a, const Point& b) const;
+  std::optional<SurfacePoint> change_between(const Point& a, const Point& b) const;
+  SurfacePoint polished_in_box(const NearPoint& near, const Point& p) const;
+  // The same without a box.
+  LabelAndBound label_and_bound_of_image(const Point& p, double radius) const;
+  double bound_of_image(const Point& p, double radius) const;
+  std::optional<NearPoint> near_point_of_image(const Point& p, double radius, const Cover& cover) const;
+  Point polished_on_interface(const NearPoint& near, const Point& p) const;
+  std::optional<SurfacePoint> intersection_of_image(const Point& a, const Point& b) const;
+  bool is_crossed_in_image(const Point& a, const Point& b, LabelIndex label) const;
+
   bool is_empty() const { return features_.is_empty(); }
   /// May be negative. Where the transform stores no feature, surface voxels are searched for only if that can
   /// decide if the distance exceeds `radius`.
@@ -194,6 +292,7 @@ class Oracle {
 
   LabelGrid<Reads> grid_;
   Features<Reads> features_;
+  std::optional<BoxPlanes> box_;                // if it is flat
   Affine from_voxels_, to_voxels_;              // to and from the working frame
   Vector spacing_, inverse_spacing_;            // mm per voxel, voxels per mm
   Point end_;                                   // half a voxel beyond the last voxel

@@ -34,8 +34,19 @@ BlockLabels LabelGrid<Reads>::block_from_transform(const Voxel& b) const {
   BlockLabels labels;
   for (int c = 0; c < 8; ++c) {
     const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
-    labels.corner[static_cast<std::size_t>(c)] = contains(v) ? features.label(v) : kBackground;
+    labels.corner[static_cast<std::size_t>(c)] = contains(v) ? features.label(v)
+                                                 : goes_on_  ? features.label(at_border(v))
+                                                             : kBackground;
   }
+  return labels;
+}
+
+template <class Reads>
+BlockLabels LabelGrid<Reads>::block_beyond_border(const Voxel& b) const {
+  BlockLabels labels;
+  for (int c = 0; c < 8; ++c)
+    labels.corner[static_cast<std::size_t>(c)] =
+        label_inside(at_border({b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)}));
   return labels;
 }
 

@@ -4,6 +4,7 @@
 // extends from there to (i+1,j+1,k+1).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -150,8 +151,9 @@ extern template Winner winner(const BlockLabels&, const Point&, const CornerWeig
 
 class FeatureTransform;
 
-/// Labels of an image, with background outside. Keeps a reference to the voxels. `Reads` receives each part
-/// of a row that is read. If the voxels stay in the image's file, labels come from `transform`, the image's.
+/// Labels of an image. Outside are background or, with a flat box, the labels at the border. Keeps a
+/// reference to the voxels. `Reads` receives each part of a row that is read. If the voxels stay in the
+/// image's file, labels come from `transform`, the image's.
 template <class Reads>
 class LabelGrid {
  public:
@@ -162,6 +164,7 @@ class LabelGrid {
         num_x_(image.size[0]),
         num_y_(image.size[1]),
         num_z_(image.size[2]),
+        goes_on_(image.is_box_flat),
         row_(static_cast<std::size_t>(num_x_)),
         slice_(row_ * static_cast<std::size_t>(num_y_)) {}
 
@@ -179,7 +182,10 @@ class LabelGrid {
       return label_from_transform(v);
     return *row_from(index(v));
   }
-  LabelIndex label(const Voxel& v) const { return contains(v) ? label_inside(v) : kBackground; }
+  LabelIndex label(const Voxel& v) const {
+    if (contains(v)) return label_inside(v);
+    return goes_on_ ? label_inside(at_border(v)) : kBackground;
+  }
   void prefetch(const Voxel& v) const {
     if (transform_ == nullptr) __builtin_prefetch(voxels_ + index(v));
   }
@@ -194,13 +200,20 @@ class LabelGrid {
       std::memcpy(&labels.corner[2], row_from(first + row_), 2 * sizeof(LabelIndex));
       std::memcpy(&labels.corner[4], row_from(first + slice_), 2 * sizeof(LabelIndex));
       std::memcpy(&labels.corner[6], row_from(first + slice_ + row_), 2 * sizeof(LabelIndex));
+    } else if (goes_on_) [[unlikely]] {
+      return block_beyond_border(b);
     } else {
       for (int c = 0; c < 8; ++c) {
         const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
-        labels.corner[static_cast<std::size_t>(c)] = label(v);
+        labels.corner[static_cast<std::size_t>(c)] = contains(v) ? label_inside(v) : kBackground;
       }
     }
     return labels;
+  }
+
+  /// The voxel inside that is nearest to v.
+  Voxel at_border(const Voxel& v) const {
+    return {std::clamp(v.i, 0, num_x_ - 1), std::clamp(v.j, 0, num_y_ - 1), std::clamp(v.k, 0, num_z_ - 1)};
   }
 
  private:
@@ -215,12 +228,14 @@ class LabelGrid {
   }
 
   LabelIndex label_from_transform(const Voxel& v) const;
+  BlockLabels block_beyond_border(const Voxel& b) const;
   BlockLabels block_from_transform(const Voxel& b) const;
 
   [[no_unique_address]] Reads reads_;
   const FeatureTransform* transform_;  // null if the image holds its voxels
   const LabelIndex* voxels_;
   int num_x_, num_y_, num_z_;
+  bool goes_on_;             // the image, beyond its border
   std::size_t row_, slice_;  // voxels
 };
 

@@ -315,7 +315,8 @@ std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Poin
 // u is searched for. Its midpoints are within half a side of it, and the isosurface is within half a diagonal
 // of it.
 template <class Reads>
-std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius, const Cover& cover) const {
+std::optional<NearPoint> Oracle<Reads>::near_point_of_image(const Point& p, double radius,
+                                                            const Cover& cover) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
   std::optional<EightVoxels> around = features_around(u);
@@ -344,7 +345,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
 // Midpoints lie on a lattice, and vertices on a lattice make flat cells that rounding can turn inside out. A
 // midpoint is therefore replaced by an isosurface point slightly beside it, as irregular as p itself.
 template <class Reads>
-Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
+Point Oracle<Reads>::polished_on_interface(const NearPoint& near, const Point& p) const {
   const Point u = to_voxels(p);
   Point z = to_voxels(near.point);
   if (near.is_midpoint) {
@@ -363,9 +364,11 @@ Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
   return from_voxels(nearest_midpoint(EightVoxels::all(near.surface_voxel), u).u);
 }
 
-template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double, const Cover&) const;
-template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double, const Cover&) const;
-template Point Oracle<NoReads>::polished(const NearPoint&, const Point&) const;
-template Point Oracle<CountedReads>::polished(const NearPoint&, const Point&) const;
+template std::optional<NearPoint> Oracle<NoReads>::near_point_of_image(const Point&, double,
+                                                                       const Cover&) const;
+template std::optional<NearPoint> Oracle<CountedReads>::near_point_of_image(const Point&, double,
+                                                                            const Cover&) const;
+template Point Oracle<NoReads>::polished_on_interface(const NearPoint&, const Point&) const;
+template Point Oracle<CountedReads>::polished_on_interface(const NearPoint&, const Point&) const;
 
 }  // namespace podm

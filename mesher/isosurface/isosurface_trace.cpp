@@ -115,23 +115,35 @@ auto Oracle<Reads>::first_change(const Point& u, const Vector& d, LabelIndex lab
 }
 
 template <class Reads>
-std::optional<Point> Oracle<Reads>::segment_intersection(const Point& a, const Point& b) const {
+std::optional<SurfacePoint> Oracle<Reads>::intersection_of_image(const Point& a, const Point& b) const {
   const Point u = to_voxels(a), v = to_voxels(b);
   const LabelIndex label = label_at_voxels(u);
-  if (const auto change = first_change(u, v - u, label)) return a + change->t * (b - a);
+  if (const auto change = first_change(u, v - u, label)) return SurfacePoint{a + change->t * (b - a)};
   if (label_at_voxels(v) == label) return std::nullopt;
-  return b;  // the change is so close to b that rounding hides it from first_change()
+  return SurfacePoint{b};  // the change is so close to b that rounding hides it from first_change()
 }
 
 template <class Reads>
-bool Oracle<Reads>::is_crossed(const Point& a, const Point& b, LabelIndex label) const {
+bool Oracle<Reads>::is_crossed_in_image(const Point& a, const Point& b, LabelIndex label) const {
   const Point u = to_voxels(a);
   return first_change(u, to_voxels(b) - u, label).has_value();
 }
 
-template std::optional<Point> Oracle<NoReads>::segment_intersection(const Point&, const Point&) const;
-template std::optional<Point> Oracle<CountedReads>::segment_intersection(const Point&, const Point&) const;
-template bool Oracle<NoReads>::is_crossed(const Point&, const Point&, LabelIndex) const;
-template bool Oracle<CountedReads>::is_crossed(const Point&, const Point&, LabelIndex) const;
+// The first change of the label between two points of the box.
+template <class Reads>
+std::optional<SurfacePoint> Oracle<Reads>::change_between(const Point& a, const Point& b) const {
+  const Point u = to_voxels(a);
+  if (const auto change = first_change(u, to_voxels(b) - u, label_clamped(a)))
+    return SurfacePoint{a + change->t * (b - a)};
+  return std::nullopt;
+}
+
+template std::optional<SurfacePoint> Oracle<NoReads>::intersection_of_image(const Point&, const Point&) const;
+template std::optional<SurfacePoint> Oracle<CountedReads>::intersection_of_image(const Point&,
+                                                                                 const Point&) const;
+template std::optional<SurfacePoint> Oracle<NoReads>::change_between(const Point&, const Point&) const;
+template std::optional<SurfacePoint> Oracle<CountedReads>::change_between(const Point&, const Point&) const;
+template bool Oracle<NoReads>::is_crossed_in_image(const Point&, const Point&, LabelIndex) const;
+template bool Oracle<CountedReads>::is_crossed_in_image(const Point&, const Point&, LabelIndex) const;
 
 }  // namespace podm

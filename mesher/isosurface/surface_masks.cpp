@@ -38,6 +38,7 @@ class RowMarker {
   // Marks the voxels from `begin` to `end` that differ; `other` is null outside the grid. All variables of
   // the loops are local: bytes may alias members, and the loops would then not be vectorised.
   void mark_differing(const LabelIndex* row, const LabelIndex* other, std::size_t begin, std::size_t end) {
+    if (other == nullptr && image_.is_box_flat) return;
     std::uint8_t* const is_surface = is_surface_.data();
     if (other == nullptr) {
       for (std::size_t x = begin; x < end; ++x) is_surface[x] |= row[x] != kBackground;

@@ -1,5 +1,5 @@
 // Marks the surface voxels: those with a 6-neighbor of another label. Outside the grid everything counts as
-// background.
+// background, unless the box is flat: no voxel outside then has another label.
 #pragma once
 
 #include <cstdint>

@@ -243,8 +243,7 @@ std::uint64_t memory_of_lines(const LabelImage& image, const LineOptions& option
 
 LineNetwork trace_lines(const LabelImage& image, const VoxelWeights* weights, const LineOptions& options) {
   if (image.voxels.empty()) throw InternalError("lines are traced only in images that hold their voxels");
-  constexpr Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  if (options.is_box_flat && working_to_world(image) != kIdentity)
+  if (options.is_box_flat && is_sheared(image))
     throw InputError(
         "a sheared image cannot have a flat box: no plane of the image is one of the mesh's frame");
   LineTracer tracer(image, weights, options);

@@ -30,6 +30,7 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
   const std::uint64_t limit_bytes = cli::memory_limit_bytes(command_);
   const auto start = std::chrono::steady_clock::now();
   image_ = read_input(input, command_, limit_bytes);
+  image_.is_box_flat = command_.meshing.box == BoxFaces::kFlat;
   run_.read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run_.options = cli::options_for_image(command_, image_, limit_bytes);
   MeshingResult result = mesh_image(image_, run_.options, progress, stop);

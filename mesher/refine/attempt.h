@@ -32,7 +32,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       rules_(mesh, isosurface, parameters, reads_),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       poor_(mesh.cell_capacity()),
-      min_distance_(kSpacingFloor * parameters.spacing_mm),
+      min_distance_(parameters.least_spacing_mm(isosurface.box().has_value())),
       self_(self),
       order_(order) {
   if (parameters.lines != nullptr) lines_.emplace(mesh, rules_, operation_, *parameters.lines);
@@ -108,12 +108,13 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
     if (sampled != Outcome::kRejected) return sampled;
   }
   if (const auto p = rules_.r2_center(t)) return insert_circumcenter(*p, c, Rule::kR2);
-  const FacetSearch search = rules_.search_facets(t, Rules::Facets::kUntested);
+  const FacetSearch search = rules_.search_untested_facets(t);
   if (search.center) {
     const std::uint16_t stamp = mesh_.stamp(c);
     const Outcome sampled = insert_on_isosurface(search.center->point, search.center->start, Rule::kR3);
     if (sampled == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
-    return sampled;
+    // At a side of the box the floor of the spacing may forbid it. The other rules go on.
+    if (sampled != Outcome::kRejected || !isosurface_.box()) return sampled;
   }
   mesh_.add_facets_passing_r3(c, search.passing);
   if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
@@ -197,14 +198,14 @@ Outcome Worker<Locks>::apply_r7(CellId c) {
   make_room_in_log();
   operation_.commit_move();
   ++operation_.counters().moves;
-  record_commit(operation_.move().point(), operation_.move().kind());
+  record_commit(operation_.move().point(), operation_.move().kind(), operation_.move().sides());
   return Outcome::kCommitted;
 }
 
 // Inserts z and applies its R6 removals in one operation. kRejected: the point is already covered, or the
 // ball only touches the isosurface there.
 template <class Locks>
-Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
+Outcome Worker<Locks>::insert_on_isosurface(const SurfacePoint& z, CellId start, Rule rule) {
   StepResult planned = operation_.plan_insertion(z, start);
   if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kCovered;
   if (lines_ && planned == StepResult::kDone) {
@@ -213,7 +214,7 @@ Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule r
     if (split) return *split;
   }
   if (planned == StepResult::kDone) planned = plan_r6_removals(z);
-  if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule);
+  if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule, z.sides);
   operation_.rollback();
   return outcome_of(planned);
 }
@@ -277,18 +278,18 @@ Outcome Worker<Locks>::give_up() {
 }
 
 template <class Locks>
-Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
+Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule, SideMask sides) {
   make_room_in_log();
-  if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
+  if (operation_.commit_insertion(p, kind, min_distance_, sides) != StepResult::kDone) return give_up();
   operation_.counters().removals += operation_.removed().size();
   ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
-  record_commit(p, kind);
+  record_commit(p, kind, sides);
   return Outcome::kCommitted;
 }
 
 template <class Locks>
-void Worker<Locks>::record_commit(const Point& p, VertexKind kind) {
-  if (order_ != nullptr) log(p, kind);
+void Worker<Locks>::record_commit(const Point& p, VertexKind kind, SideMask sides) {
+  if (order_ != nullptr) log(p, kind, sides);
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
 }
@@ -318,13 +319,13 @@ void Worker<Locks>::make_room_in_log() {
 }
 
 template <class Locks>
-void Worker<Locks>::log(const Point& p, VertexKind kind) {
+void Worker<Locks>::log(const Point& p, VertexKind kind, SideMask sides) {
   const auto& removed = operation_.removed();
   unlogged_.operations.push_back({order_->next(self_, operation_.created(), removed),
                                   {p.x, p.y, p.z},
                                   operation_.inserted(),
                                   self_,
-                                  static_cast<std::uint32_t>(kind),
+                                  static_cast<std::uint32_t>(kind) | std::uint32_t{sides} << kSidesInLog,
                                   static_cast<std::uint32_t>(removed.size())});
   unlogged_.removed.insert(unlogged_.removed.end(), removed.begin(), removed.end());
 }

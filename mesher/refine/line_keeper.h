@@ -201,7 +201,7 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(const LineEdge
       if (!crossing || !is_missing(crossing->beyond)) continue;
       if (squared_distance(crossing->point, end) < edges_.floor_mm() * edges_.floor_mm()) continue;
       for (const CellId start : {from, to})
-        if (mesh_.is_in_conflict(start, crossing->point)) return SurfaceCenter{crossing->point, start};
+        if (mesh_.is_in_conflict(start, crossing->point)) return SurfaceCenter{{crossing->point}, start};
     }
   }
   return std::nullopt;

@@ -42,7 +42,7 @@ class MoveJudge {
   /// Returns the data that the rules need about a planned cell, or about one that stays.
   Examination examine(CellId c);
   /// Returns R1's sample, unless the vertices of the cell or of its neighbors cover it.
-  std::optional<Point> sample(const Examination& t) const { return rules_.r1_sample(t); }
+  std::optional<SurfacePoint> sample(const Examination& t) const { return rules_.r1_sample(t); }
   bool covers(VertexId v, const Point& z) const { return rules_.is_covered(z, v); }
   /// True if the cell violates none of R2 to R5.
   bool obeys_r2_to_r5(const Examination& t) const {
@@ -54,7 +54,7 @@ class MoveJudge {
   bool reaches(CellId c, const Point& from) const;
   bool may_be_uncovered(CellId c, const Point& from) const;
   bool was_covered(const Point& z, const Point& from) const;
-  std::optional<Point> on_isosurface(const Point& p, double radius_mm) const {
+  std::optional<SurfacePoint> on_isosurface(const Point& p, double radius_mm) const {
     return rules_.settled(p, radius_mm);
   }
 

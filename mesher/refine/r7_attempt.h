@@ -56,12 +56,15 @@ void Perturbation<Locks>::begin(VertexId v, CellId poor) {
   points_.begin(mesh_.point(v), others, effort_);
 }
 
-// Projects the point of an isosurface vertex to the isosurface.
+// Projects the point of an isosurface vertex to the isosurface. A vertex stays on its sides of the box.
 template <class Locks>
 std::optional<Point> Perturbation<Locks>::next_point() {
   const Point p = points_.next(random_);
   if (operation_.move().kind() != VertexKind::kIsosurface) return points_.spaced(p);
-  const auto settled = [&](const Point& of) { return judge_.on_isosurface(of, points_.reach_mm()); };
+  const auto settled = [&](const Point& of) -> std::optional<Point> {
+    const std::optional<SurfacePoint> z = judge_.on_isosurface(of, points_.reach_mm());
+    return z && z->sides == operation_.move().sides() ? std::optional<Point>(*z) : std::nullopt;
+  };
   const auto first = settled(p);
   if (!first || points_.is_spaced(*first)) return first;
   const auto pushed = points_.spaced(*first);

@@ -14,6 +14,12 @@ namespace {
 constexpr double square(double x) { return x * x; }
 // The nearest point that the oracle finds is the true one, up to a small error.
 constexpr double kNearestTrust = 0.9;
+// R3's point on a side moves to an edge of the box, or to a curve, within this share of its ball's radius.
+constexpr double kToEdge = 0.7;
+// Any point of R3 moves to a side that is near enough to be a sample of it, within this share.
+constexpr double kToSide = 0.5;
+// So does R1's point, within this share of delta.
+constexpr double kToEdgeOfDelta = 0.3;
 constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
 Point clamped(const Point& p, const Box& box) {
@@ -31,7 +37,10 @@ RulesOn<Cells>::RulesOn(Cells& mesh, const Isosurface& isosurface, const Paramet
       parameters_(parameters),
       squared_delta_(square(parameters.delta_mm)),
       squared_two_delta_(square(2 * parameters.delta_mm)),
-      has_deltas_(parameters.deltas != nullptr) {
+      has_deltas_(parameters.deltas != nullptr),
+      has_box_(isosurface.box().has_value()),
+      has_box_or_counts_(has_box_ || reads),
+      untested_(has_box_ ? Facets::kUntestedInBox : Facets::kUntested) {
   if (reads) counted_.emplace(isosurface.counted(*reads));
 }
 
@@ -135,17 +144,19 @@ bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
 }
 
 template <class Cells>
-std::optional<Point> RulesOn<Cells>::r1_sample(const Examination& t) const {
+std::optional<SurfacePoint> RulesOn<Cells>::r1_sample(const Examination& t) const {
   if (!t.relies_on_others()) return std::nullopt;
-  const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
+  SurfacePoint z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
+  if (has_box_) [[unlikely]]
+    z = moved_to_sides(z, kToEdgeOfDelta * parameters_.delta_mm);
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }
 
 template <class Cells>
-std::optional<Point> RulesOn<Cells>::settled(const Point& p, double radius_mm) const {
+std::optional<SurfacePoint> RulesOn<Cells>::settled(const Point& p, double radius_mm) const {
   const auto near = ask([&](const auto& oracle) { return oracle.near_point(p, radius_mm); });
   if (!near) return std::nullopt;
-  return ask([&](const auto& oracle) { return oracle.polished(*near, p); });
+  return std::optional(ask([&](const auto& oracle) { return oracle.polished(*near, p); }));
 }
 
 // True if a vertex opposite to one of the cell's facets covers z. The caller would find this vertex, or one
@@ -228,10 +239,21 @@ FacetMask RulesOn<Cells>::facets_tested_before(CellId c) const {
   return 0;
 }
 
+// An open box pays no branch if facets are untested, which is in all of refinement.
 template <class Cells>
 FacetSearch RulesOn<Cells>::search_facets(const Examination& t, Facets facets) const {
+  FacetMask tested = 0;
+  if (facets == Facets::kUntested)
+    tested = facets_tested_before(t.cell);
+  else if (has_box_) [[unlikely]]
+    return search_in_box(t, facets == Facets::kUntestedInBox ? facets_tested_before(t.cell) : 0);
+  return search<false>(t, tested);
+}
+
+template <class Cells>
+template <bool kInBox>
+FacetSearch RulesOn<Cells>::search(const Examination& t, FacetMask tested) const {
   FacetSearch search{.center = {}, .passing = 0};
-  const FacetMask tested = facets == Facets::kUntested ? facets_tested_before(t.cell) : 0;
   for (unsigned k = 0; k < 4; ++k) {
     const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
     if (mirror == kNoFacet || (tested >> k & 1) != 0) continue;
@@ -239,27 +261,94 @@ FacetSearch RulesOn<Cells>::search_facets(const Examination& t, Facets facets) c
     const bool may_be = may_be_restricted(t, neighbor);
     // The other cell may find otherwise if it has a distance that is proven, or another that is not.
     if (!may_be && !t.is_distance_proven) continue;
-    if (may_be && needs_sample(t.cell, k) && is_restricted(t, neighbor))
+    if constexpr (kInBox) {
+      if (may_be) search.center = center_in_box(t, neighbor, k);
+    } else if (may_be && needs_sample(t.cell, k) && is_restricted(t, neighbor)) {
       search.center = surface_center(t, neighbor);
+    }
     if (search.center) return search;
     search.passing |= 1u << k;
   }
   return search;
 }
 
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::center_in_box(const Examination& t, CellId neighbor,
+                                                           unsigned facet) const {
+  if (const auto on_side = center_on_side(t, neighbor, facet)) return on_side;
+  if (!needs_sample(t.cell, facet) || !is_restricted(t, neighbor)) return std::nullopt;
+  const std::optional<SurfacePoint> z = change_on_dual_edge(t, neighbor);
+  if (!z) return std::nullopt;
+  const SurfacePoint moved = moved_to_sides(*z, reach_at(*z, kToSide, t.cell, facet));
+  if (const auto found = in_conflict(moved, t.cell, neighbor)) return found;
+  return in_conflict(*z, t.cell, neighbor);
+}
+
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::surface_center(const Examination& t, CellId neighbor) const {
+  const std::optional<SurfacePoint> z = change_on_dual_edge(t, neighbor);
+  return z ? in_conflict(*z, t.cell, neighbor) : std::nullopt;
+}
+
 // The search goes from the lexicographically smaller center to the larger one: both cells of the facet find
 // the same point.
 template <class Cells>
-std::optional<SurfaceCenter> RulesOn<Cells>::surface_center(const Examination& t, CellId neighbor) const {
+std::optional<SurfacePoint> RulesOn<Cells>::change_on_dual_edge(const Examination& t, CellId neighbor) const {
   const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
   if (lexicographically_less(*to, *from)) std::swap(from, to);
-  const std::optional<Point> z =
-      ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });
-  if (!z) return std::nullopt;
-  for (const CellId start : {t.cell, neighbor}) {
-    if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
+  return ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });
+}
+
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::in_conflict(const SurfacePoint& z, CellId c,
+                                                         CellId neighbor) const {
+  for (const CellId start : {c, neighbor}) {
+    if (mesh_.is_in_conflict(start, z)) return SurfaceCenter{z, start};
   }
   return std::nullopt;
+}
+
+// The point at which the dual edge leaves a label through a side of the box, unless all vertices of the facet
+// are on that side.
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::center_on_side(const Examination& t, CellId neighbor,
+                                                            unsigned facet) const {
+  const std::optional<SurfacePoint> z = ask_either(
+      [&](const auto& oracle) { return oracle.exit_through_side(t.center, mesh_.cell(neighbor).center); });
+  if (!z || (z->sides & common_sides(t.cell, facet)) != 0) return std::nullopt;
+  const double reach = reach_at(*z, kToEdge, t.cell, facet);
+  const SurfacePoint settled =
+      ask_either([&](const auto& oracle) { return oracle.settled_on_edge(*z, reach); });
+  if (const auto found = in_conflict(settled, t.cell, neighbor)) return found;
+  return in_conflict(*z, t.cell, neighbor);
+}
+
+// Moves a point of the isosurface onto sides that are very near, and from a side onto an edge of the box
+// within `reach`.
+template <class Cells>
+SurfacePoint RulesOn<Cells>::moved_to_sides(const SurfacePoint& z, double reach) const {
+  const SurfacePoint snapped = isosurface_.box()->snapped(z);
+  if (squared_distance(z, snapped) > reach * reach) return z;
+  if (snapped.sides == 0) return snapped;
+  return ask_either([&](const auto& oracle) { return oracle.moved_onto_edge(snapped, reach); });
+}
+
+// The ball around z, on the dual edge of the facet, through the facet's vertices is empty. A point may move
+// by this share of its radius, and stays above the floor of the spacing.
+template <class Cells>
+double RulesOn<Cells>::reach_at(const Point& z, double share, CellId c, unsigned facet) const {
+  constexpr double kAboveFloor = 1.01;
+  const auto first = static_cast<unsigned>(kFacetVertices[facet][0]);
+  const double radius = distance(z, mesh_.point(mesh_.cell(c).vertices[first]));
+  return std::max(0.0, std::min(share * radius, radius - kAboveFloor * parameters_.least_spacing_mm(true)));
+}
+
+template <class Cells>
+SideMask RulesOn<Cells>::common_sides(CellId c, unsigned facet) const {
+  unsigned common = ~0u;
+  for (const int i : kFacetVertices[facet])
+    common &= mesh_.vertex(mesh_.cell(c).vertices[static_cast<unsigned>(i)]).sides;
+  return static_cast<SideMask>(common);
 }
 
 template <class Cells>

@@ -27,7 +27,7 @@
 //           m q^2 / sqrt(4 q^2 - 1), which is m for q = k, and 0.9991 m for q = 1.93.
 // The published bound 1.93 is k rounded down. It lets R4 insert a vertex up to 0.1 % nearer than k s (one in
 // a thousand of R4's insertions does). It also lets R3 insert a sample beside that vertex up to 0.09 % nearer
-// than s, but only if three lengths are within 0.3 % of their least values. kSpacingFloor (worker.h) ends any
+// than s, but only if three lengths are within 0.3 % of their least values. kSpacingFloor ends any
 // chain of such insertions. Without them m = s. Therefore refinement terminates, on non-manifold interfaces
 // too. Rules are tightened by kMargin (R5 by kGridMargin on a grid), which exceeds the rounding errors unless
 // the object is a million radii from the origin.
@@ -45,6 +45,24 @@
 //   |p - c| <= r < 2 delta(c) as R2 does not apply, thus delta(c) < delta(p) + 2 L delta(c), which is
 //   delta(c) < 2 delta(p). Further |c - z| <= |p - c| < 4 delta(p), and delta(z) < delta(p) + 8 L delta(p) =
 //   3 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 4 + 4 + 3. With one delta it is 5 delta.
+//
+// Flat box (isosurface/box_planes.h). Each sample has a set of sides that it is on. R3 also
+// applies to a facet whose dual edge leaves a label through a side, unless all three vertices are on that
+// side. Then the facets that end the object there lie in the plane: the dual edge of such a facet leads from
+// a center in the box to one outside. R1 to R6 never move a vertex, and R7 keeps its sides.
+//   Spacing. R3's ball is empty, and its radius is at least the facet's circumradius. If all three vertices
+//   are samples, that is m / sqrt(3) or more, so each such insertion may leave 0.17 m. kSpacingFloorOfBox
+//   ends a chain of them. The other rules keep what they keep in terms of m, whatever m is.
+//   The point moves to an edge of the box, or to the curve in which an interface meets the side, if one is
+//   within 0.7 of the ball's radius, and then keeps 0.3 of it. As soon as all facets at the sides lie in
+//   their planes, the edges of the box where the object touches them are edges of the mesh, and its corners
+//   vertices: the boundary is closed, and facets in different planes can only meet there.
+//   The planes are reached, up to the floor. Let a be a vertex off the side and z the point at which its
+//   facet leaves. If a is on another side, the edge between the two is nearer to z than a is. If it is on an
+//   interface, it is 0.45 voxels or more from the plane (BoxPlanes::snapped), unless its move to the plane
+//   would have left the ball of its cell. Within half a voxel of the plane the interface stands at right
+//   angles to it. Facets that the floor leaves off their
+//   side are counted (Guarantees::off_sides).
 // R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
 // measured.
 //
@@ -92,6 +110,12 @@
 namespace podm {
 
 inline constexpr double kMargin = 1e-9;  // relative
+/// The invariants keep vertices s apart, up to a thousandth at a time, except at the sides of a flat box.
+/// Only an oracle that errs about the nearest point can bring them much closer. An insertion nearer to a
+/// vertex than this share of s is refused, so that refinement terminates for every image.
+inline constexpr double kSpacingFloor = 0.1;
+/// The same with a flat box.
+inline constexpr double kSpacingFloorOfBox = 0.02;
 
 enum class Rule { kR1, kR2, kR3, kR4, kR5, kR0 };  // positions in Counters::insertions_by_rule
 
@@ -106,6 +130,10 @@ struct Parameters {
   double shell_mm = 0, shell_radius_mm = 0;
   std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta is the same everywhere
   LineEdges* lines = nullptr;                          // null: no lines are kept
+  /// Insertions nearer to a vertex are refused.
+  double least_spacing_mm(bool is_box_flat) const {
+    return (is_box_flat ? kSpacingFloorOfBox : kSpacingFloor) * spacing_mm;
+  }
 };
 
 /// The data that the rules need about a cell, requested from the oracle once.
@@ -124,8 +152,8 @@ struct Examination {
 };
 
 struct SurfaceCenter {
-  Point point;
-  CellId start;  // a cell in conflict with it
+  [[no_unique_address]] SurfacePoint point;  // `start` is in its padding
+  CellId start;                              // a cell in conflict with it
 };
 
 /// The findings of R3 at the facets of a cell.
@@ -154,22 +182,23 @@ class RulesOn {
   /// moved the point. Otherwise the caller must still look for isosurface vertices closer than delta among
   /// the vertices of the point's cavity: the nearest one would be joined to the point by a Gabriel edge and
   /// is therefore among them.
-  std::optional<Point> r1_sample(const Examination& t) const;
+  std::optional<SurfacePoint> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
   /// The squared distances from a sample, mm^2, below which is_covered() and r6_removes() may hold of a
   /// vertex.
   double squared_reach_of_cover() const { return squared_delta_; }
   double squared_reach_of_r6() const { return squared_two_delta_; }
   /// Returns the isosurface point nearest to p, if within `radius_mm`.
-  std::optional<Point> settled(const Point& p, double radius_mm) const;
+  std::optional<SurfacePoint> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const {
-    return search_facets(t, Facets::kAll).center;
+    return search_all_facets(t).center;
   }
-  enum class Facets { kAll, kUntested };
-  /// Searches for a surface center as r3_surface_center() does. kUntested: except at facets on which R3 was
-  /// tested before, from one cell or the other (Mesh::facets_passing_r3).
-  FacetSearch search_facets(const Examination& t, Facets facets) const;
+  /// Searches for a surface center up to the first facet that needs one.
+  FacetSearch search_all_facets(const Examination& t) const { return search_facets(t, Facets::kAll); }
+  /// The same, except at facets on which R3 was tested
+  /// before, from one cell or the other (Mesh::facets_passing_r3).
+  FacetSearch search_untested_facets(const Examination& t) const { return search_facets(t, untested_); }
   /// The first point on the way from one cell's center to another's where the label changes, and the label
   /// beyond it.
   struct Crossing {
@@ -196,12 +225,17 @@ class RulesOn {
   }
 
  private:
-  // Both oracles give the same answers. A run that counts nothing pays one branch per question.
+  // Both oracles give the same answers. A run that counts nothing and has an open box pays one branch per
+  // question.
   template <class Question>
   auto ask(const Question& question) const {
-    if (counted_) [[unlikely]]
-      return question(*counted_);
-    return question(isosurface_);
+    if (has_box_or_counts_) [[unlikely]]
+      return ask_either(question);
+    return question(Isosurface::OfOpenBox(isosurface_));
+  }
+  template <class Question>
+  auto ask_either(const Question& question) const {
+    return counted_ ? question(*counted_) : question(isosurface_);
   }
   LabelIndex look_up_label(CellId c) const;
   LabelAndBound label_and_bound(CellId c, double radius) const;
@@ -211,7 +245,21 @@ class RulesOn {
   FacetMask facets_tested_before(CellId c) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_restricted(const Examination& t, CellId neighbor) const;
+  enum class Facets { kAll, kUntested, kUntestedInBox };
+  FacetSearch search_facets(const Examination& t, Facets facets) const;
+  template <bool kInBox>
+  FacetSearch search(const Examination& t, FacetMask tested) const;
+  [[gnu::noinline]] FacetSearch search_in_box(const Examination& t, FacetMask tested) const {
+    return search<true>(t, tested);
+  }
+  std::optional<SurfacePoint> change_on_dual_edge(const Examination& t, CellId neighbor) const;
   std::optional<SurfaceCenter> surface_center(const Examination& t, CellId neighbor) const;
+  std::optional<SurfaceCenter> center_in_box(const Examination& t, CellId neighbor, unsigned facet) const;
+  std::optional<SurfaceCenter> center_on_side(const Examination& t, CellId neighbor, unsigned facet) const;
+  std::optional<SurfaceCenter> in_conflict(const SurfacePoint& z, CellId c, CellId neighbor) const;
+  [[gnu::noinline]] SurfacePoint moved_to_sides(const SurfacePoint& z, double reach) const;
+  SideMask common_sides(CellId c, unsigned facet) const;
+  double reach_at(const Point& z, double share, CellId c, unsigned facet) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius, double squared_delta) const;
   // Only deltas by place need these functions. They are not inlined, so that runs with one delta pay no more
   // than branches.
@@ -229,6 +277,9 @@ class RulesOn {
   const Parameters& parameters_;
   double squared_delta_, squared_two_delta_;  // of the largest delta
   bool has_deltas_;                           // delta depends on the place
+  bool has_box_;                              // the box is flat
+  bool has_box_or_counts_;
+  Facets untested_;  // kUntested, or kUntestedInBox
 };
 
 extern template class RulesOn<Mesh>;

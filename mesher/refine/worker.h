@@ -97,10 +97,6 @@ class Worker {
   std::int64_t net_cells() const { return operation_.net_cells(); }
 
  private:
-  // The invariants keep vertices s apart, up to a thousandth at a time (rules.h). Only an oracle that errs
-  // about the nearest point can bring them much closer. An insertion far below s is refused, so that
-  // refinement terminates for every image.
-  static constexpr double kSpacingFloor = 0.1;
   static constexpr std::size_t kOperationsToFlush = 4096;
   // The number of attempts between the prefetch of a cell and its turn, and between that of its surroundings
   // and its turn.
@@ -120,16 +116,16 @@ class Worker {
   std::optional<Outcome> split_line();
   StepResult plan_beside_lines(const Point& p, CellId start, std::optional<Outcome>& outcome);
   Outcome apply_r7(CellId c);
-  Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);
+  Outcome insert_on_isosurface(const SurfacePoint& z, CellId start, Rule rule);
   bool is_covered(const Point& z) const;
   StepResult plan_r6_removals(const Point& z);
   double squared_reach_of_r6_near_lines(const Point& z) const;
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
-  Outcome commit(const Point& p, VertexKind kind, Rule rule);
+  Outcome commit(const Point& p, VertexKind kind, Rule rule, SideMask sides = 0);
   Outcome give_up();
   void make_room_in_log();
-  void record_commit(const Point& p, VertexKind kind);
-  void log(const Point& p, VertexKind kind);
+  void record_commit(const Point& p, VertexKind kind, SideMask sides);
+  void log(const Point& p, VertexKind kind, SideMask sides);
   void list_created();
 
   Mesh& mesh_;

@@ -173,7 +173,7 @@ class Merge {
 void expect_one_run(const std::vector<LogOfRank>& logs) {
   const auto run_of = [](const OperationLogHead& head) {
     return std::tie(head.num_ranks, head.box, head.image_sha256, head.space, head.mesh_sha256, head.mesh_hash,
-                    head.smoothing_mm);
+                    head.smoothing_mm, head.is_box_flat);
   };
   const LogOfRank& first = logs.front();
   for (std::size_t i = 0; i < logs.size(); ++i) {

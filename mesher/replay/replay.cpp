@@ -78,8 +78,9 @@ class Replay {
       start = operation_.created().front();
       return;
     }
+    const std::uint32_t sides = logged.kind >> kSidesInLog;
     const std::uint32_t kind_of_vertex = logged.kind % kReceivedInsertion,
-                        kind_of_entry = logged.kind - kind_of_vertex;
+                        kind_of_entry = logged.kind % (1u << kSidesInLog) - kind_of_vertex;
     check(kind_of_entry == 0 ||
               (is_of_ranks() && (kind_of_entry == kReceivedInsertion || kind_of_entry == kSeed)),
           "the kind of the entry is unknown");
@@ -96,8 +97,10 @@ class Replay {
     check(
         is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter) || is_kind(VertexKind::kLine),
         "the kind of its vertex is unknown");
+    check(sides == 0 || log_.head.is_box_flat, "its vertex is on a side of the box, which is open");
+    check(sides >> kNumSides == 0, "the sides of its vertex are unknown");
     const auto kind = static_cast<VertexKind>(kind_of_vertex);
-    check(operation_.commit_insertion(p, kind, kTouching) == StepResult::kDone,
+    check(operation_.commit_insertion(p, kind, kTouching, static_cast<SideMask>(sides)) == StepResult::kDone,
           "its point is a vertex already");
     check(vertex_of_.emplace(logged.vertex, operation_.inserted()).second, "its vertex exists already");
     start = operation_.created().front();

@@ -180,6 +180,7 @@ class Extractor {
     out_.vertices.reserve(vertices.total());
     for_each_slice(mesh_.vertex_bound(), [&](VertexId first, VertexId last) {
       parallel_resize(out_.vertices, vertices.before(last), threads_);
+      if (out_.is_box_flat) parallel_resize(out_.vertex_sides, vertices.before(last), threads_);
       for_each_chunk(first, last, threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
         write_vertices(begin, end, vertices[chunk]);
       });
@@ -192,6 +193,7 @@ class Extractor {
       if (out_ids_[v] != kUsed) continue;
       out_ids_[v] = static_cast<std::uint32_t>(at);
       if (!is_on_isosurface(mesh_.vertex(v).kind)) out_ids_[v] |= kOffIsosurface;
+      if (out_.is_box_flat) out_.vertex_sides[at] = mesh_.vertex(v).sides;
       const Point p = map(to_world_, mesh_.point(v));
       out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
     }
@@ -262,6 +264,7 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int 
   out.lines = std::move(lines);
   out.labels = isosurface.image().labels;
   out.space = space;
+  out.is_box_flat = isosurface.image().is_box_flat;
   facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();
   return out;
 }

@@ -5,6 +5,7 @@
 #include "replay/replay.h"
 #include "run/calibrate.h"
 #include "run/extract_mesh.h"
+#include "run/facets_of_sides.h"
 #include "run/phases_of_run.h"
 #include "smoothing/smooth_interfaces.h"
 
@@ -27,6 +28,8 @@ class Run {
     phases_.report_refinement(refinement, report);
     phases_.optimize(*refinement.mesh, report);
     phases_.compare_topology(*refinement.mesh, report);
+    report.guarantees.off_sides =
+        count_facets_off_sides(*refinement.mesh, phases_.isosurface(), phases_.loop_threads());
     const auto extract = [&](Space space) {
       MeshLines lines = phases_.extract_lines(refinement, report);
       result.mesh = extract_mesh(*refinement.mesh, phases_.isosurface(), space, phases_.loop_threads(),

@@ -14,6 +14,7 @@
 #include "prediction/cost_model.h"
 #include "run/extract_lines.h"
 #include "run/extract_mesh.h"
+#include "run/facets_of_sides.h"
 #include "run/measure_quality.h"
 #include "run/report_on_smoothing.h"
 #include "runtime/system_memory.h"
@@ -248,8 +249,9 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   const double start_s = seconds_();
   measure_quality(mesh, image_, *size_field_, loop_threads_, report);
   report.phases_s["measure"] += seconds_() - start_s;
-  mesh.is_optimized = report.optimization.has_value();
+  mesh.is_optimized = report.optimization.has_value() || is_turned_for_output(image_);
   mesh.smoothing_mm = options_.smoothing_mm;
+  if (mesh.is_box_flat) report.facets_of_sides = count_facets_of_sides(mesh);
   if (report.topology) mesh.topology_differences = report.topology->differences;
   if (report.lines) mesh.lines.are_claimed = report.lines->is_claimed();
   promise_dihedral_bounds(mesh, report);

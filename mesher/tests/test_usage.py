@@ -10,7 +10,7 @@ from podm_process import PROGRAM, PodmTestCase, run_podm
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta", "--thin",
              "--delta-least", "--target-elements", "--target-tolerance", "--target-meshes", "--smooth",
-             "--min-dihedral", "--labels", "--drop-islands", "--merge", "--drop", "--layers", "--background",
+             "--box", "--min-dihedral", "--labels", "--drop-islands", "--merge", "--drop", "--layers", "--background",
              "--label-names", "--space", "--surface", "--record", "--max-elements", "--max-seconds",
              "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",

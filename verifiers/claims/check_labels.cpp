@@ -73,7 +73,9 @@ class CellLabels {
     const LabelValue stated = mesh_.cell_labels[cell];
     const double lead = lead_of(stated, weights, best);
     const double slack = 2 * (center.error + LabelFunction::kWeightError);
-    if (lead > slack) {
+    if (label_function_.is_at_side(center.voxels, center.error)) {
+      decide_exactly(cell, center, tally);
+    } else if (lead > slack) {
       keep(tally.closest, cell, center, lead, -lead);
     } else if (-lead > slack) {
       add_wrong(tally, cell, center, lead, -lead);

@@ -36,6 +36,9 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
                           const Options& options);
 ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                                    const Options& options);
+/// The image must have a flat box. Not on ranks.
+ClaimResult check_box(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
+                      const Options& options);
 /// Not on ranks.
 ClaimResult check_lines(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                         const Options& options);

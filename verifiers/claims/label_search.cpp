@@ -81,7 +81,7 @@ std::optional<LabelSearch::Found> LabelSearch::along(const Point& u, const Point
 std::optional<LabelSearch::Found> LabelSearch::find(const Point& u, const Wanted& wanted, double reach,
                                                     std::uint64_t& num_exact) const {
   const Rivals rivals = this->rivals(u, wanted);
-  if (is_out_of_reach(rivals, reach)) return std::nullopt;
+  if (is_out_of_reach(rivals, reach) && !function_.is_at_side(u, reach)) return std::nullopt;
   std::optional<Found> best;
   const auto try_direction = [&](const Point& direction) {
     const auto found = along(u, direction, wanted, best ? best->distance : reach, num_exact);

@@ -1,9 +1,10 @@
 // Searches for points of an image's labels near a point, by the label function's exact decisions.
 //
 // A point that is found is a proof. If none is found, nothing is proved, unless weights are too far apart for
-// their slopes, which ends the search at once. Otherwise the search probes the segments from the point along
-// the gradient of the weights that matter there, and along the axes and diagonals of voxels. On a segment
-// that meets the label it bisects to the first point of the label.
+// their slopes, which ends the search at once, except at the sides of a flat box, where weights jump.
+// Otherwise the search probes the segments from the point along the gradient of the weights that matter
+// there, and along the axes and diagonals of voxels. On a segment that meets the label it bisects to the
+// first point of the label.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "parallel.h"
 
@@ -75,8 +76,21 @@ class BlockSearch {
   BlockSearch(const LabelFunction& function, const ImageFrame& frame, std::vector<LinePoint>& points)
       : function_(function), frame_(frame), points_(points) {}
 
-  void search(const std::array<int, 3>& block) {
-    const auto labels = function_.corners(block);
+  void search(const std::array<int, 3>& block) { search(block, function_.corners(block)); }
+
+  // Searches the plane of the low or the high side along an axis. `block` begins at the outermost centers.
+  void search_side(const std::array<int, 3>& block, std::size_t axis, bool is_high) {
+    auto labels = function_.corners(block);
+    for (std::size_t c = 0; c < 8; ++c)
+      if (((c >> axis & 1) != 0) == is_high) labels[c] = 0;
+    axis_ = axis;
+    plane_ = block[axis] + 0.5;
+    search(block, labels);
+    plane_.reset();
+  }
+
+ private:
+  void search(const std::array<int, 3>& block, const std::array<std::uint32_t, 8>& labels) {
     auto distinct = labels;
     std::sort(distinct.begin(), distinct.end());
     const auto end = std::unique(distinct.begin(), distinct.end());
@@ -93,7 +107,6 @@ class BlockSearch {
     divide({{0, 0, 0}, {1, 1, 1}}, in_block, kCuts);
   }
 
- private:
   void divide(const Box& box, const std::vector<InBox>& all, int cuts_left) {
     const std::vector<InBox> labels = not_below(all);
     if (labels.size() < kFewestLabels) return;
@@ -122,6 +135,8 @@ class BlockSearch {
       if (!point.is_decided || is_greatest[i]) point.labels.push_back(labels[i].label);
     const Point center = box.center();
     for (std::size_t axis = 0; axis < 3; ++axis) point.voxels[axis] = block_[axis] + center[axis];
+    if (plane_) point.voxels[axis_] = *plane_;
+    if (function_.is_outside_box(point.voxels)) return;
     point.world = frame_.voxels_to_world(point.voxels);
     points_.push_back(std::move(point));
   }
@@ -130,7 +145,16 @@ class BlockSearch {
   const ImageFrame& frame_;
   std::vector<LinePoint>& points_;
   std::array<int, 3> block_{};
+  std::optional<double> plane_;  // of a side, while it is searched
+  std::size_t axis_ = 0;         // across the side
 };
+
+// Searches the sides of a flat box that pass through the block.
+void search_sides(BlockSearch& search, const std::array<int, 3>& block, const std::array<int, 3>& size) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const bool is_high : {false, true})
+      if (block[axis] == (is_high ? size[axis] - 1 : -1)) search.search_side(block, axis, is_high);
+}
 
 }  // namespace
 
@@ -149,7 +173,10 @@ std::vector<LinePoint> lines_of_image(const Image& image, const ImageFrame& fram
                            BlockSearch search(function, frame, found.points);
                            for (int k = static_cast<int>(begin) - 1; k < static_cast<int>(end) - 1; ++k)
                              for (int j = -1; j < size[1]; ++j)
-                               for (int i = -1; i < size[0]; ++i) search.search({i, j, k});
+                               for (int i = -1; i < size[0]; ++i) {
+                                 search.search({i, j, k});
+                                 if (image.is_box_flat) search_sides(search, {i, j, k}, size);
+                               }
                          })
       .points;
 }

@@ -6,6 +6,10 @@
 // which fewer than three labels are left has no point of a line. Other boxes are cut in eight, down to a
 // floor. A box of the floor with three labels that are greatest at its corners stands for a point of a line,
 // at its center. A box of the floor in which other labels may be greatest, too, is undecided.
+//
+// On the sides of a flat box, lines are where two labels besides background meet in the plane. They are found
+// in blocks from the outermost voxel centers outwards, with background at the outer corners, and moved to the
+// plane: along the axis the weights of the labels in the plane keep their proportions.
 #pragma once
 
 #include <vector>

@@ -19,7 +19,8 @@ struct Smoothing {
 };
 inline constexpr std::uint16_t kFullVoxelWeight = 65535;
 
-/// Voxels are stored x fastest. Outside the grid every voxel is background (0).
+/// Voxels are stored x fastest. Outside the grid every voxel is background (0), unless the box is flat
+/// (label_function.h).
 struct Image {
   std::string path;
   std::array<int, 3> size{};
@@ -28,6 +29,7 @@ struct Image {
   std::vector<std::uint32_t> voxels;       ///< label values
   std::vector<std::string> warnings = {};  ///< oddities of the file
   std::optional<Smoothing> smoothing = {};
+  bool is_box_flat = false;                     ///< the outer faces of the outermost voxels end the labels
   std::set<std::uint32_t> covered_labels = {};  ///< of segments that others cover, perhaps entirely
 };
 

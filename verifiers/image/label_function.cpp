@@ -52,8 +52,29 @@ LabelFunction::LabelFunction(const Image& image, const Smoothing* smoothing)
 
 // At a voxel or more from the grid all eight voxels are background.
 bool LabelFunction::is_near(const Point& u) const {
+  if (image_.is_box_flat) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!(u[axis] >= -0.5 && u[axis] <= image_.size[axis] - 0.5)) return false;
+    return true;
+  }
   return u[0] > -1 && u[0] < image_.size[0] && u[1] > -1 && u[1] < image_.size[1] && u[2] > -1 &&
          u[2] < image_.size[2];
+}
+
+// With a flat box returns the nearest point between the centers of voxels.
+Point LabelFunction::in_grid(const Point& u) const {
+  if (!image_.is_box_flat) return u;
+  Point inside;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    inside[axis] = std::clamp(u[axis], 0.0, image_.size[axis] - 1.0);
+  return inside;
+}
+
+bool LabelFunction::is_at_side(const Point& u, double reach) const {
+  for (std::size_t axis = 0; image_.is_box_flat && axis < 3; ++axis)
+    if (std::abs(u[axis] + 0.5) <= reach || std::abs(u[axis] - (image_.size[axis] - 0.5)) <= reach)
+      return true;
+  return false;
 }
 
 LabelFunction::Place LabelFunction::place(const Point& u) {
@@ -84,7 +105,12 @@ std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b)
   std::array<std::uint32_t, 8> labels{};
   const auto& n = image_.size;
   for (int c = 0; c < 8; ++c) {
-    const int i = b[0] + (c & 1), j = b[1] + (c >> 1 & 1), k = b[2] + (c >> 2);
+    int i = b[0] + (c & 1), j = b[1] + (c >> 1 & 1), k = b[2] + (c >> 2);
+    if (image_.is_box_flat) {
+      i = std::clamp(i, 0, n[0] - 1);
+      j = std::clamp(j, 0, n[1] - 1);
+      k = std::clamp(k, 0, n[2] - 1);
+    }
     if (i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2])
       labels[static_cast<std::size_t>(c)] =
           image_.voxels[static_cast<std::size_t>(k) * slice_ + static_cast<std::size_t>(j) * row_ +
@@ -132,7 +158,13 @@ std::uint32_t LabelFunction::label_at(const Point& u) const {
 
 // Along each axis the factors of a weight are multiplied by the coordinate's denominator, so that all of them
 // are integers. This multiplies all weights by the same number.
-std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) const {
+std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& at) const {
+  std::array<mpq_class, 3> u = at;
+  for (std::size_t axis = 0; image_.is_box_flat && axis < 3; ++axis) {
+    const mpq_class last(image_.size[axis] - 1), half(1, 2);
+    if (u[axis] < -half || u[axis] > last + half) return 0;
+    u[axis] = std::clamp(u[axis], mpq_class(0), last);
+  }
   std::array<int, 3> block{};
   std::array<std::array<mpz_class, 2>, 3> factors;  // of the lower and the upper voxel along each axis
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -172,7 +204,7 @@ LabelWeights LabelFunction::weights_at(const Point& u) const {
     result.count = 1;
     return result;
   }
-  const Place p = place(u);
+  const Place p = place(in_grid(u));
   const auto labels = corners(p.block);
   if (is_uniform(labels)) {
     result.labels[0] = labels[0];
@@ -194,7 +226,7 @@ LabelWeights LabelFunction::weights_at(const Point& u) const {
 Point LabelFunction::gradient_of_difference(const Point& u, std::uint32_t a, std::uint32_t b) const {
   Point gradient{};
   if (!is_near(u)) return gradient;
-  const Place p = place(u);
+  const Place p = place(in_grid(u));
   const auto labels = corners(p.block);
   std::array<double, 8> at_corners{1, 1, 1, 1, 1, 1, 1, 1};
   if (smoothing_ != nullptr) at_corners = smoothed(at_corners, p.block);
@@ -205,7 +237,7 @@ Point LabelFunction::gradient_of_difference(const Point& u, std::uint32_t a, std
       Point unit = p.f;
       const bool is_high = (c >> axis & 1) != 0;
       unit[axis] = is_high ? 1 : 0;  // the factor of this axis becomes 1
-      gradient[axis] += (is_high ? slope : -slope) * corner_weight(c, unit);
+      if (in_grid(u)[axis] == u[axis]) gradient[axis] += (is_high ? slope : -slope) * corner_weight(c, unit);
     }
   }
   return gradient;

@@ -2,6 +2,10 @@
 // eight voxels around the point; ties go to the smaller label. Outside the grid every voxel is background.
 // The isosurface is where the label changes.
 //
+// With a flat box the label at a point between the outer faces of the outermost voxels is that of the nearest
+// point between their centers: these voxels go on up to their faces. Outside the faces the label is
+// background.
+//
 // A label's weight is the trilinear interpolation of its indicator. The indicator is 1 at the label's voxels
 // and 0 elsewhere. In a smoothed image it is the weight of the voxel (smoothing.h), above 0 and at most
 // 1, in place of 1. The weight is therefore continuous, and along each axis it changes by at most 1 per
@@ -50,6 +54,10 @@ class LabelFunction {
   /// `num_exact` counts these points.
   std::uint32_t decided_label_at(const Point& u, std::uint64_t& num_exact) const;
   LabelWeights weights_at(const Point& u) const;
+  /// True if the box is flat and u is outside.
+  bool is_outside_box(const Point& u) const { return image_.is_box_flat && !is_near(u); }
+  /// True if the box is flat and u is within `reach` of the plane of one of its sides, where weights jump.
+  bool is_at_side(const Point& u, double reach) const;
   /// Returns the derivative at u of weight(a) - weight(b), by voxel coordinates.
   Point gradient_of_difference(const Point& u, std::uint32_t a, std::uint32_t b) const;
 
@@ -69,6 +77,7 @@ class LabelFunction {
   };
   LabelFunction(const Image& image, const Smoothing* smoothing);
   bool is_near(const Point& u) const;
+  Point in_grid(const Point& u) const;
   bool is_inside(const std::array<int, 3>& block) const;  // all eight voxels are in the grid
   template <class Value>
   std::array<Value, 8> eight(const std::vector<Value>& grid, const std::array<int, 3>& block) const;

@@ -77,6 +77,10 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
     mesh.unclaimed.emplace(*claim);
     return;
   }
+  if (words == "box flat") {
+    mesh.promises_flat_box = true;
+    return;
+  }
   if (const auto angles = after_prefix(words, "dihedral ")) {
     const auto bounds = numbers_of<2>(*angles);
     if (bounds && (*bounds)[0] >= 0 && (*bounds)[0] <= 90 && (*bounds)[1] >= 90 && (*bounds)[1] <= 180) {

@@ -19,6 +19,7 @@ void take_head(const Mesh& first, Mesh& whole) {
   whole.promised_topology = first.promised_topology;
   whole.listed_differences = first.listed_differences;
   whole.smoothing_mm = first.smoothing_mm;
+  whole.promises_flat_box = first.promises_flat_box;
   whole.promised_lines_delta_mm = first.promised_lines_delta_mm;
 }
 

@@ -126,6 +126,7 @@ struct Head {
   std::vector<std::string> unclaimed;
   std::optional<std::array<double, 2>> promised_dihedral_deg;
   std::optional<double> smoothing_mm, promised_lines_delta_mm;
+  bool promises_flat_box = false;
 
   Head() = default;
   Head(const Mesh& mesh, const std::string& format_of_first)
@@ -136,7 +137,8 @@ struct Head {
         unclaimed(mesh.unclaimed.begin(), mesh.unclaimed.end()),
         promised_dihedral_deg(mesh.promised_dihedral_deg),
         smoothing_mm(mesh.smoothing_mm),
-        promised_lines_delta_mm(mesh.promised_lines_delta_mm) {}
+        promised_lines_delta_mm(mesh.promised_lines_delta_mm),
+        promises_flat_box(mesh.promises_flat_box) {}
 
   Mesh mesh() const {
     Mesh mesh;
@@ -147,12 +149,13 @@ struct Head {
     mesh.promised_dihedral_deg = promised_dihedral_deg;
     mesh.smoothing_mm = smoothing_mm;
     mesh.promised_lines_delta_mm = promised_lines_delta_mm;
+    mesh.promises_flat_box = promises_flat_box;
     return mesh;
   }
   template <class Stream>
   void transfer(Stream& stream) {
     stream(format, space, label_names, label_colours, unclaimed, promised_dihedral_deg, smoothing_mm,
-           promised_lines_delta_mm);
+           promised_lines_delta_mm, promises_flat_box);
   }
 };
 

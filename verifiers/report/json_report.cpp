@@ -91,6 +91,7 @@ Json options_of(const Options& options) {
   return {{"claims", options.claims.empty() ? Json(nullptr) : Json(options.claims)},
           {"space", options.space ? Json(describe(*options.space)) : Json(nullptr)},
           {"selection", selection_of(options.selection)},
+          {"box", options.is_box_flat ? Json(*options.is_box_flat ? "flat" : "open") : Json(nullptr)},
           {"smooth_mm", options.smooth_mm ? Json(*options.smooth_mm) : Json(nullptr)},
           {"radius_edge_bound", options.radius_edge_bound},
           {"angle_bound_deg", options.angle_bound_deg},
@@ -133,6 +134,7 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
       mesh.promised_dihedral_deg ? Json(*mesh.promised_dihedral_deg) : Json(nullptr);
   mesh_json["promised_lines_delta_mm"] =
       mesh.promised_lines_delta_mm ? Json(*mesh.promised_lines_delta_mm) : Json(nullptr);
+  mesh_json["promises_flat_box"] = mesh.promises_flat_box;
   mesh_json["smoothing_mm"] = mesh.smoothing_mm ? Json(*mesh.smoothing_mm) : Json(nullptr);
   const Json report{{"schema", "podm-verify/1"},
                     {"program", "podm-verify " PODM_VERSION},

@@ -35,6 +35,8 @@ const char* why_left_out(const Claim& claim, const Mesh& mesh) {
       return "needs --min-dihedral or --max-dihedral";
     case Needs::kPromisedImage:
       return "needs --image, and a file that promises it";
+    case Needs::kFlatBox:
+      return "needs --image, and --box flat or a file that promises it";
     case Needs::kLines:
       return "needs --image and --lines-delta";
   }

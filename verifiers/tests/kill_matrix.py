@@ -12,12 +12,12 @@ import subprocess
 import sys
 import tempfile
 
-from line_mutants import OPERATORS
+from box_mutants import OPERATORS
 from medit_mesh import MeditMesh
 from mutants import Mutant, MutantFixture
 from pvtu_mesh import MeshInPieces
 
-NOT_ON_RANKS = ("lines", "topology")  # claims that podm-verify-mpi refuses
+NOT_ON_RANKS = ("box", "lines", "topology")  # claims that podm-verify-mpi refuses
 
 
 def run(verifier, case, claim, folder):

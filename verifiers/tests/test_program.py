@@ -68,6 +68,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_exit(process, 0)
         self.assertIn("left out: size (needs --radius), dihedral (needs --min-dihedral or --max-dihedral), "
                       "labels (needs --image), surface_vertices (needs --image), "
+                      "box (needs --image, and --box flat or a file that promises it), "
                       "lines (needs --image and --lines-delta), fidelity (needs --image), "
                       "topology (needs --image, and a file that promises it)",
                       process.stdout)

@@ -51,7 +51,7 @@ inline std::string broken_facet(Mesh& mesh, const Isosurface& isosurface, const 
       mesh.set_mirror(mirror, facet);
       const CellId c = cell_of(side);
       mesh.add_facets_passing_r3(c, kAllFacets & ~(1u << index_in_cell(side)));
-      if (rules.search_facets(rules.examine(c), Rules::Facets::kUntested).center)
+      if (rules.search_untested_facets(rules.examine(c)).center)
         return "R3 asks for facet " + std::to_string(facet) + " from cell " + std::to_string(c);
     }
   }

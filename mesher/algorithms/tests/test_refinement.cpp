@@ -197,8 +197,8 @@ TEST_P(Refined, TestsR3AgainOnOtherFacetsOnly) {
       ++num_of_neighbors;
     }
     const Examination t = rules.examine(c);
-    const FacetMask all = rules.search_facets(t, Rules::Facets::kAll).passing;
-    ASSERT_EQ(rules.search_facets(t, Rules::Facets::kUntested).passing, all & ~tested) << c;
+    const FacetMask all = rules.search_all_facets(t).passing;
+    ASSERT_EQ(rules.search_untested_facets(t).passing, all & ~tested) << c;
   }
   EXPECT_GT(num_of_neighbors, 0);
 }

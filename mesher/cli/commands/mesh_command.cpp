@@ -68,7 +68,8 @@ void finish_log(OperationLogWriter& log, const MeshRun& run) {
               .image_sha256 = label_image_sha256(run.image),
               .space = to_string(run.options.space),
               .mesh_sha256 = run.mesh_sha256,
-              .smoothing_mm = run.options.smoothing_mm});
+              .smoothing_mm = run.options.smoothing_mm,
+              .is_box_flat = run.image.is_box_flat});
   log.publish();
 }
 
@@ -91,6 +92,7 @@ int run(const MeshCommand& command) {
   const double read_s = timed([&] {
     image =
         read_labelled_image(command.image, loop_threads(command.meshing.team), bytes_for_image(limit_bytes));
+    image.is_box_flat = command.meshing.box == BoxFaces::kFlat;
   });
   MeshRun run{.command = command,
               .image = image,

@@ -70,6 +70,7 @@ std::vector<std::string> MeshRun::unmet() const {
   count(misses.orientation, "cells that rounding made flat or inverted");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
   count(misses.topology, "components whose topology differs from the image's");
+  count(misses.off_sides, "facets that leave the side of the box where they end the object");
   if (command.verify && !verification && mesh.cells > 0)
     sentences.push_back("podm-verify: ended early by a signal; no claim is decided");
   for (const auto& [claim, verdict] : verdicts())

@@ -48,8 +48,9 @@ Hashes hashes_of(const OperationLogHead& head, TetMesh& mesh) {
 }  // namespace
 
 int run(const ReplayCommand& command) {
-  const LabelImage image = read_labelled_image(command.image);
+  LabelImage image = read_labelled_image(command.image);
   const OperationLog log = read_logs(command, label_image_sha256(image));
+  image.is_box_flat = log.head.is_box_flat;
   const std::string& first = command.log_paths.front();
   const std::string name =
       log.head.num_ranks == 1 ? first : fmt::format("{} and {} more", first, log.head.num_ranks - 1);

@@ -11,6 +11,7 @@
 #include "files/temporary_file.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "run/facets_of_sides.h"
 
 namespace podm::cli {
 namespace {
@@ -83,10 +84,11 @@ Judging judging_of(const MeshRun& run) {
   Judging judging{
       {"structure", "radius_edge", "boundary_angles", "conformity", "surface", "labels", "surface_vertices"},
       {"--delta", fmt::format("{}", run.report.delta_mm)}};
-  const bool is_delaunay = !run.report.optimization;
+  const bool is_delaunay = !run.report.optimization && !is_turned_for_output(run.image);
   if (is_delaunay) judging.claims.push_back("delaunay");
   if (run.report.promised_dihedral_deg) judging.claims.push_back("dihedral");  // the file has the bounds
   if (run.report.topology) judging.claims.push_back("topology");
+  if (run.report.facets_of_sides) judging.claims.push_back("box");  // the file promises it
   if (run.report.lines && run.report.lines->is_claimed()) judging.claims.push_back("lines");
   const std::vector<std::string> sizes = size_options(run);
   if (!sizes.empty()) judging.claims.push_back("size");

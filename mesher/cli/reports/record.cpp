@@ -23,7 +23,7 @@ PODM_TO_JSON(SmoothingReport, width_mm, labels)
 PODM_TO_JSON(Quality, max_radius_edge, min_facet_angle_deg, max_facet_angle_deg, min_dihedral_deg,
              max_dihedral_deg, max_radius_mm, shortest_edge_mm)
 PODM_TO_JSON(Guarantees, radius_edge, facet_angle, radius, facet_vertices, orientation, missing_labels,
-             topology)
+             topology, off_sides)
 
 namespace cli {
 namespace {
@@ -254,6 +254,14 @@ Json thin_layers_of(const MeshingReport& report) {
           {"least_delta_mm", of.least_delta_mm}, {"thin_voxels", of.thin_voxels}};
 }
 
+Json facets_of_sides(const MeshingReport& report) {
+  if (!report.facets_of_sides) return nullptr;
+  Json counts = Json::object();
+  for (std::size_t side = 0; side < kNumSides; ++side)
+    counts[kSideNames[side]] = (*report.facets_of_sides)[side];
+  return counts;
+}
+
 Json label_values(const std::vector<Label>& labels) {
   Json values = Json::array();
   for (const Label& label : labels) values.push_back(label.value);
@@ -308,6 +316,7 @@ Json promises_of(const MeshingReport& report) {
                  "surface",   "labels",      "surface_vertices", "fidelity"};
   if (report.promised_dihedral_deg) claims.push_back("dihedral");
   if (report.topology) claims.push_back("topology");
+  if (report.facets_of_sides) claims.push_back("box");
   if (report.lines && report.lines->is_claimed()) claims.push_back("lines");
   return claims;
 }
@@ -385,6 +394,7 @@ Json record(const MeshRun& run) {
       {"boundary_facets", run.mesh.boundary_facets},
       {"labels", labels_of(run)},
       {"facet_pairs", facet_pairs_of(run)},
+      {"facets_of_sides", facets_of_sides(report)},
       {"cells_per_second", run.cells_per_second()},
       {"refine_cells_per_second", run.refine_cells_per_second()},
       {"peak_rss_bytes", run.peak_rss_bytes},

@@ -47,6 +47,14 @@ std::string facets_text(const MeshRun& run) {
   return text + more(counts.size(), "pairs");
 }
 
+std::string sides_text(const MeshingReport& report) {
+  if (!report.facets_of_sides) return "";
+  std::string text = "box        facets by side:";
+  for (std::size_t side = 0; side < kNumSides; ++side)
+    text += fmt::format(" {} {}", kSideNames[side], (*report.facets_of_sides)[side]);
+  return text + "\n";
+}
+
 std::string quality_text(const MeshingReport& report) {
   const Quality& quality = report.quality;
   return fmt::format(
@@ -235,8 +243,9 @@ std::string summary(const MeshRun& run) {
   std::string text =
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
-  text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report) +
-          perturbation_text(report) + optimization_text(report) + topology_text(report) + lines_text(report);
+  text += labels_text(run) + smoothing_text(run) + facets_text(run) + sides_text(report) +
+          quality_text(report) + perturbation_text(report) + optimization_text(report) +
+          topology_text(report) + lines_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -98,6 +98,13 @@ struct Names<Thin> {
   static constexpr std::array kAll{std::pair{Thin::kKeep, "keep"}, std::pair{Thin::kLose, "lose"}};
 };
 
+/// The surface of objects that touch the image's border: rounded there, or the flat sides of the image's box.
+enum class BoxFaces { kOpen, kFlat };
+template <>
+struct Names<BoxFaces> {
+  static constexpr std::array kAll{std::pair{BoxFaces::kOpen, "open"}, std::pair{BoxFaces::kFlat, "flat"}};
+};
+
 /// The operations of optimisation: replace the cells around an edge or on both sides of facets, move a
 /// vertex, fill a cavity with any cells, fill a cavity with any cells and a new vertex, and give a flat cell
 /// on an interface to another label.

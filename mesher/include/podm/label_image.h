@@ -45,8 +45,8 @@ struct DroppedIslands {
 /// An image of labelled voxels, stored by dense label index, x fastest. The outside of the grid is
 /// background, so structures that touch the border are closed there. Geometry is computed in the *working
 /// frame*. The working frame is the world (RAS), unless the affine shears by more than rounding in doubles
-/// explains. It is then the image's own frame: the center of voxel (i,j,k) is at (i*spacing[0], j*spacing[1],
-/// k*spacing[2]) mm.
+/// explains, or the box is flat and its sides are oblique in the world. It is then the image's own frame: the
+/// center of voxel (i,j,k) is at (i*spacing[0], j*spacing[1], k*spacing[2]) mm.
 struct LabelImage {
   std::array<int, 3> size{};        ///< voxels per axis
   std::array<double, 3> spacing{};  ///< mm, positive: the column norms of `voxel_to_ras`
@@ -57,6 +57,9 @@ struct LabelImage {
   std::vector<std::string> warnings = {};            ///< unusual properties of the file that was read
   std::vector<DroppedIslands> dropped_islands = {};  ///< one entry per label that lost components
   std::vector<Segment> segments = {};                ///< of a segmentation of 3D Slicer, in the file's order
+  /// True: structures that touch the border are cut there by the planes of the outermost voxels' outer faces
+  /// (MeshingOptions::box). False: their surface rounds the border's edges.
+  bool is_box_flat = false;
 
   std::size_t num_voxels() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *

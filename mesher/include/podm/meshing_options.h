@@ -265,6 +265,8 @@ struct MeshingOptions {
   /// If positive, labels are blurred by a Gaussian of this width, mm. Interfaces are then where blurred
   /// labels tie, not on the stairs of voxels. Voxels keep their labels.
   double smoothing_mm = 0;
+  /// The surface of objects that touch the image's border. It must agree with LabelImage::is_box_flat.
+  BoxFaces box = BoxFaces::kOpen;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
   /// With fewer threads kPdrPodm and kAuto are exactly kPodm; from this number on kAuto is kPodmHome. 0:
@@ -306,6 +308,10 @@ struct MeshingOptions {
                 .record = "smoothing_mm",
                 .uses = kInAll | kInPlan,
                 .quantity = "length in mm"}),
+        option(&M::box, "box", "", kSurfaces,
+               "surface of objects that touch the image's border: rounded there; or flat, in the\n"
+               "planes of the outermost voxels' outer faces, whose edges are edges of the mesh",
+               {.not_on_ranks = "a rank does not know on which side of the box the vertices of others are"}),
         option(&M::min_dihedral_deg, "min-dihedral", "DEG", kDihedral,
                "at the end move vertices until almost no cell with an interior vertex has a\n"
                "dihedral angle below this, degrees, or above 175 less 1.25 times this; all\n"

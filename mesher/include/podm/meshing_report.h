@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "podm/bounds.h"
+#include "podm/box_sides.h"
 #include "podm/choices.h"
 #include "podm/counters.h"
 #include "podm/lines_report.h"
@@ -30,8 +31,12 @@ struct Guarantees {
   std::uint64_t missing_labels = 0;  ///< labels of more than 1000 voxels without a cell
   /// Differences of topology from the image that are left, if thin layers are kept.
   std::uint64_t topology = 0;
+  /// Facets where the object leaves a flat box, and that do not lie on the side there.
+  std::uint64_t off_sides = 0;
   bool all_met() const {
-    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels + topology == 0;
+    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels + topology +
+               off_sides ==
+           0;
   }
 };
 
@@ -174,6 +179,8 @@ struct MeshingReport {
     std::map<std::string, double> constants;
   };
   std::optional<SimulatedMachine> simulated_machine;
+  /// Facets by side of the box, set if it is flat.
+  std::optional<std::array<std::uint64_t, kNumSides>> facets_of_sides;
   std::optional<TopologyReport> topology;          ///< set if thin layers are kept
   std::optional<LinesReport> lines;                ///< set if lines are kept
   std::optional<PerturbationReport> perturbation;  ///< set if R7 was requested and reached

@@ -32,6 +32,9 @@ inline constexpr std::uint32_t kMovedVertex = 0;
 /// may have logged the same one.
 inline constexpr std::uint32_t kReceivedInsertion = 1u << 8, kReceivedRemoval = 1u << 9, kSeed = 1u << 10;
 
+/// The sides of a flat box that a vertex is on are in the bits of its kind from this one on.
+inline constexpr unsigned kSidesInLog = 16;
+
 /// The high bits of a sequence number are the step, from 0. A run on one machine has only step 0.
 inline constexpr unsigned kBitsInStep = 40;
 inline std::uint64_t step_of(std::uint64_t sequence) { return sequence >> kBitsInStep; }
@@ -73,6 +76,7 @@ struct OperationLogHead {
   std::string mesh_hash = {};   ///< mesh_hash_text() of the whole mesh, if ranks made it; otherwise empty
   int rank = 0, num_ranks = 1;  ///< rank of this log, and number of ranks
   double smoothing_mm = 0;      ///< width by which interfaces were smoothed
+  bool is_box_flat = false;     ///< LabelImage::is_box_flat of the image as meshed
   std::optional<CubesOfRank> cubes = {};  ///< set if there are several ranks
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "podm/box_sides.h"
 #include "podm/choices.h"
 #include "podm/label_image.h"
 #include "podm/mesh_lines.h"
@@ -15,7 +16,9 @@ namespace podm {
 
 /// Every cell is positively oriented: with vertices (a,b,c,d), dot(cross(b-a, c-a), d-a) > 0.
 struct TetMesh {
-  std::vector<std::array<double, 3>> vertices;       ///< coordinates in `space`
+  std::vector<std::array<double, 3>> vertices;  ///< coordinates in `space`
+  /// One per vertex, the sides of the image's box that it is on, if the box is flat. Otherwise empty.
+  std::vector<SideMask> vertex_sides = {};
   std::vector<std::array<std::uint32_t, 4>> cells;   ///< positions in `vertices`
   std::vector<LabelIndex> cell_labels;               ///< one per cell, position in `labels`, never background
   std::vector<std::array<std::uint32_t, 3>> facets;  ///< boundary and interface facets, each once
@@ -28,11 +31,19 @@ struct TetMesh {
   bool is_optimized = false;
   /// The width, mm, by which the interfaces of the image were smoothed; 0: not smoothed.
   double smoothing_mm = 0;
+  bool is_box_flat = false;  ///< facets at the border of the image lie in the planes of its box
   /// Least and largest dihedral angle, degrees, that all cells keep, if bounds were requested and reached.
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
   /// If thin layers were kept, all differences of topology from the image that are left.
   std::optional<std::vector<TopologyReport::Difference>> topology_differences = {};
   MeshLines lines = {};
 };
+
+/// The side of a flat box that a boundary facet lies on, as a set with one bit at most.
+inline SideMask side_of_facet(const TetMesh& mesh, std::size_t facet) {
+  if (mesh.vertex_sides.empty() || mesh.facet_labels[facet][0] != kBackground) return 0;
+  const auto& [a, b, c] = mesh.facets[facet];
+  return mesh.vertex_sides[a] & mesh.vertex_sides[b] & mesh.vertex_sides[c];
+}
 
 }  // namespace podm

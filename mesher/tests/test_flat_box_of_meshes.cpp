@@ -1,0 +1,233 @@
+// Meshes with a flat box: their boundary at the image's border lies in the planes of its sides.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "algorithms/check_options.h"
+#include "geometry/affine.h"
+#include "podm/mesh_image.h"
+#include "podm/mesh_io.h"
+#include "tests/fault_of.h"
+#include "tests/images.h"
+
+namespace podm::test {
+namespace {
+
+MeshingOptions flat(double radius_mm, double delta_mm) {
+  MeshingOptions options;
+  options.sizes.radius_mm = radius_mm;
+  options.sizes.delta_mm = delta_mm;
+  options.box = BoxFaces::kFlat;
+  options.team.threads = 1;
+  return options;
+}
+
+LabelImage flat(LabelImage image) {
+  image.is_box_flat = true;
+  return image;
+}
+
+// A block that two labels fill, with an interface at an angle.
+LabelImage filled_block() {
+  return flat(make_image({12, 10, 9}, {1, 1, 1}, 2,
+                         [](int i, int j, int k) { return i + 0.4 * j - 0.3 * k < 6 ? 1 : 2; }));
+}
+
+// A ball that all sides but one cut, and a second one in a corner.
+LabelImage cut_balls() {
+  return flat(make_image({14, 13, 12}, {1, 1.1, 0.9}, 2, [](int i, int j, int k) {
+    if (std::hypot(i - 13, 1.1 * j - 14, 0.9 * k) < 6) return 2;
+    return std::hypot(i - 5.0, 1.1 * j - 5, 0.9 * k - 5) < 7 ? 1 : 0;
+  }));
+}
+
+std::set<std::array<std::uint32_t, 2>> edges_on(const TetMesh& mesh, SideMask sides) {
+  std::set<std::array<std::uint32_t, 2>> edges;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (side_of_facet(mesh, f) == 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = mesh.facets[f][i], b = mesh.facets[f][(i + 1) % 3];
+      if ((mesh.vertex_sides[a] & mesh.vertex_sides[b] & sides) == sides)
+        edges.insert({std::min(a, b), std::max(a, b)});
+    }
+  }
+  return edges;
+}
+
+double length_of(const TetMesh& mesh, const std::set<std::array<std::uint32_t, 2>>& edges) {
+  double sum = 0;
+  for (const auto& [a, b] : edges) {
+    const auto &p = mesh.vertices[a], &q = mesh.vertices[b];
+    sum += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+  }
+  return sum;
+}
+
+double area_of(const TetMesh& mesh, SideMask side) {
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (side_of_facet(mesh, f) != side) continue;
+    const auto at = [&](std::size_t i) {
+      const auto& v = mesh.vertices[mesh.facets[f][i]];
+      return Point{v[0], v[1], v[2]};
+    };
+    sum += 0.5 * std::sqrt(squared_length(cross(at(1) - at(0), at(2) - at(0))));
+  }
+  return sum;
+}
+
+// The distance of a vertex from the plane of a side in the world, mm.
+double off_plane(const LabelImage& image, const std::array<double, 3>& vertex, std::size_t side) {
+  const Point u = map(inverse(image.voxel_to_ras), Point{vertex[0], vertex[1], vertex[2]});
+  const std::size_t a = side / 2;
+  const double at = std::array{u.x, u.y, u.z}[a];
+  return std::fabs(at - (side % 2 == 0 ? -0.5 : image.size[a] - 0.5)) * image.spacing[a];
+}
+
+void expect_flat(const LabelImage& image, const MeshingResult& made) {
+  const TetMesh& mesh = made.mesh;
+  EXPECT_TRUE(made.report.guarantees.all_met());
+  EXPECT_EQ(made.report.guarantees.off_sides, 0);
+  ASSERT_EQ(mesh.vertex_sides.size(), mesh.vertices.size());
+  std::array<std::set<double>, kNumSides> coordinates;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    for (std::size_t side = 0; side < kNumSides; ++side)
+      if ((mesh.vertex_sides[v] >> side & 1) != 0) {
+        ASSERT_LT(off_plane(image, mesh.vertices[v], side), 1e-11);
+      }
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_labels[f][0] != kBackground) {
+      ASSERT_EQ(side_of_facet(mesh, f), 0);
+    }
+  }
+}
+
+// The object fills the box: its boundary is the box, with all edges and corners.
+TEST(FlatBoxOfMesh, IsTheBoxOfAFilledImage) {
+  const LabelImage image = filled_block();
+  const MeshingResult made = mesh_image(image, flat(2.5, 1.2));
+  expect_flat(image, made);
+  const TetMesh& mesh = made.mesh;
+  double volume = 0;
+  for (const auto& [label, mm3] : made.report.volume_of_label_mm3) volume += mm3;
+  EXPECT_NEAR(volume, 12 * 10 * 9, 1e-9 * volume);
+  std::size_t on_sides = 0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) on_sides += side_of_facet(mesh, f) != 0;
+  EXPECT_EQ(on_sides, std::count_if(mesh.facet_labels.begin(), mesh.facet_labels.end(),
+                                    [](const auto& pair) { return pair[0] == kBackground; }));
+  const std::array<double, 3> length{12, 10, 9};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = a + 1; b < 6; ++b) {
+      if (a / 2 == b / 2) continue;
+      const auto edge = static_cast<SideMask>(1u << a | 1u << b);
+      EXPECT_NEAR(length_of(mesh, edges_on(mesh, edge)), length[3 - a / 2 - b / 2], 1e-9);
+    }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double face = length[(a + 1) % 3] * length[(a + 2) % 3];
+    EXPECT_NEAR(area_of(mesh, static_cast<SideMask>(1u << 2 * a)), face, 1e-9);
+    EXPECT_NEAR(area_of(mesh, static_cast<SideMask>(2u << 2 * a)), face, 1e-9);
+  }
+  const auto corners = std::count_if(mesh.vertex_sides.begin(), mesh.vertex_sides.end(),
+                                     [](SideMask sides) { return std::popcount(sides) == 3; });
+  EXPECT_EQ(corners, 8);
+}
+
+TEST(FlatBoxOfMesh, HoldsWhereTheObjectTouchesTheBorder) {
+  const LabelImage image = cut_balls();
+  for (const double delta : {0.8, 1.5}) {
+    const MeshingResult made = mesh_image(image, flat(3, delta));
+    expect_flat(image, made);
+    EXPECT_TRUE(made.report.facets_of_sides);
+    EXPECT_GT((*made.report.facets_of_sides)[0], 0);
+  }
+}
+
+TEST(FlatBoxOfMesh, HoldsInAnyFrame) {
+  for (const NamedAffine& frame : affines()) {
+    LabelImage image = filled_block();
+    image.voxel_to_ras = frame.affine;
+    if (std::string(frame.name).find("sheared") != std::string::npos) {
+      EXPECT_NE(fault_of<InputError>([&] { mesh_image(image, flat(2.5, 1.5)); }).find("sheared"),
+                std::string::npos);
+      continue;
+    }
+    const MeshingResult made = mesh_image(image, flat(2.5, 1.5));
+    expect_flat(image, made);
+    double volume = 0;
+    for (const auto& [label, mm3] : made.report.volume_of_label_mm3) volume += mm3;
+    EXPECT_NEAR(volume, 12 * 10 * 9, 1e-8 * volume) << frame.name;
+  }
+}
+
+// In frames that are permuted or mirrored all vertices on a side have one coordinate.
+TEST(FlatBoxOfMesh, IsExactInPermutedFrames) {
+  LabelImage image = filled_block();
+  image.voxel_to_ras = {0, -1, 0, 5.3, -1, 0, 0, 6.7, 0, 0, -1, 7.1};
+  const MeshingResult made = mesh_image(image, flat(2.5, 1.5));
+  constexpr std::array<std::size_t, 3> kRows{1, 0, 2};
+  std::array<std::set<double>, kNumSides> coordinates;
+  for (std::size_t v = 0; v < made.mesh.vertices.size(); ++v)
+    for (std::size_t side = 0; side < kNumSides; ++side)
+      if ((made.mesh.vertex_sides[v] >> side & 1) != 0)
+        coordinates[side].insert(made.mesh.vertices[v][kRows[side / 2]]);
+  for (const auto& of_side : coordinates) EXPECT_EQ(of_side.size(), 1);
+}
+
+TEST(FlatBoxOfMesh, HoldsForAllAlgorithmsAndOptions) {
+  const LabelImage image = cut_balls();
+  MeshingOptions options = flat(2.5, 1.3);
+  for (const Algorithm algorithm :
+       {Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm, Algorithm::kPodmHome}) {
+    options.algorithm = algorithm;
+    options.team.threads = 2;
+    expect_flat(image, mesh_image(image, options));
+  }
+  options = flat(2.5, 1.3);
+  options.smoothing_mm = 1.5;
+  expect_flat(image, mesh_image(image, options));
+  options = flat(2.5, 1.3);
+  options.min_dihedral_deg = 10;
+  expect_flat(image, mesh_image(image, options));
+  options.min_dihedral_deg = 0;
+  options.optimize.is_wanted = true;
+  expect_flat(image, mesh_image(image, options));
+}
+
+TEST(FlatBoxOfMesh, HoldsInALayerOfOneVoxel) {
+  const LabelImage image = flat(
+      make_image({14, 11, 1}, {1, 1, 2}, 2, [](int i, int j, int) { return i + j > 4 ? 1 + (i > 7) : 0; }));
+  expect_flat(image, mesh_image(image, flat(3, 1)));
+  expect_flat(image, mesh_image(image, flat(3, 0)));
+}
+
+// Noise has features below the floor of the spacing. Few facets may stay off their side.
+TEST(FlatBoxOfMesh, NearlyHoldsForNoise) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    const LabelImage image = flat(
+        make_image({7, 6, 5}, {1, 1, 1}, 3, [&](int, int, int) { return static_cast<int>(random() % 4); }));
+    const MeshingResult made = mesh_image(image, flat(2, 0.6));
+    EXPECT_LE(made.report.guarantees.off_sides, made.mesh.facets.size() / 20) << seed;
+  }
+}
+
+TEST(FlatBoxOfMesh, IsTheSameAgain) {
+  const LabelImage image = cut_balls();
+  TetMesh first = mesh_image(image, flat(2.5, 1.3)).mesh, second = mesh_image(image, flat(2.5, 1.3)).mesh;
+  canonicalize(first);
+  canonicalize(second);
+  EXPECT_EQ(mesh_sha256(first), mesh_sha256(second));
+  EXPECT_EQ(first.vertex_sides, second.vertex_sides);
+}
+
+TEST(FlatBoxOfMesh, NeedsTheImageToAgree) {
+  LabelImage image = filled_block();
+  image.is_box_flat = false;
+  EXPECT_NE(fault_of<InputError>([&] { mesh_image(image, flat(2.5, 1.5)); }), "no error");
+}
+
+}  // namespace
+}  // namespace podm::test
