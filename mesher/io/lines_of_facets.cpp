@@ -38,9 +38,9 @@ std::vector<LabelAtEdge> labels_at_edges(const TetMesh& mesh) {
 
 }  // namespace
 
-void find_lines(TetMesh& mesh, double delta_mm) {
-  mesh.lines = {};
-  mesh.lines.delta_mm = delta_mm;
+MeshLines lines_of_facets(const TetMesh& mesh, double delta_mm) {
+  MeshLines lines;
+  lines.delta_mm = delta_mm;
   std::map<Labels, std::uint32_t> numbers;
   const std::vector<LabelAtEdge> all = labels_at_edges(mesh);
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
@@ -48,10 +48,11 @@ void find_lines(TetMesh& mesh, double delta_mm) {
     for (; end < all.size() && all[end].edge == all[begin].edge; ++end) labels.push_back(all[end].label);
     if (labels.size() < kLeastLabels) continue;
     const auto [line, is_new] = numbers.try_emplace(labels, static_cast<std::uint32_t>(numbers.size()));
-    if (is_new) mesh.lines.labels_of_line.push_back(labels);
-    mesh.lines.edges.push_back(all[begin].edge);
-    mesh.lines.line_of_edge.push_back(line->second);
+    if (is_new) lines.labels_of_line.push_back(labels);
+    lines.edges.push_back(all[begin].edge);
+    lines.line_of_edge.push_back(line->second);
   }
+  return lines;
 }
 
 }  // namespace podm

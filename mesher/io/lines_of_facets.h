@@ -5,8 +5,8 @@
 
 namespace podm {
 
-/// Replaces `mesh.lines` by all edges of facets along which three or more labels meet. `delta_mm` is the
-/// distance at which the lines were sampled. Takes 72 bytes per facet while it runs.
-void find_lines(TetMesh& mesh, double delta_mm);
+/// Returns all edges of facets along which three or more labels meet. `delta_mm` is the distance at which the
+/// lines were sampled. Takes 72 bytes per facet while it runs.
+MeshLines lines_of_facets(const TetMesh& mesh, double delta_mm);
 
 }  // namespace podm

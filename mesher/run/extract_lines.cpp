@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "image/working_frame.h"
+#include "io/lines_of_facets.h"
 #include "lines/line_graph.h"
 
 namespace podm {
@@ -231,29 +232,12 @@ MeshLines extract_lines(const Mesh& mesh, const LineEdges& edges, const LabelIma
   return LineExtractor(mesh, edges, image, report)();
 }
 
-// Three labels meet only at edges of three facets or more.
 std::vector<std::array<std::uint32_t, 2>> stray_edges(const TetMesh& mesh) {
-  std::vector<std::pair<Key, std::uint32_t>> facets_of_edges;  // edge and facet
-  facets_of_edges.reserve(3 * mesh.facets.size());
-  for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
-    for (std::size_t i = 0; i < 3; ++i)
-      facets_of_edges.emplace_back(key_of(mesh.facets[f][i], mesh.facets[f][(i + 1) % 3]), f);
-  std::sort(facets_of_edges.begin(), facets_of_edges.end());
-  std::unordered_set<Key> lines;
-  for (const auto& edge : mesh.lines.edges) lines.insert(key_of(edge[0], edge[1]));
-  std::vector<std::array<std::uint32_t, 2>> strays;
-  for (auto first = facets_of_edges.begin(); first != facets_of_edges.end();) {
-    const auto last = std::find_if(first, facets_of_edges.end(),
-                                   [&](const auto& each) { return each.first != first->first; });
-    LabelSet labels;
-    for (auto each = first; last - first >= 3 && each != last; ++each)
-      for (const LabelIndex label : mesh.facet_labels[each->second]) insert_label(labels, label);
-    if (labels.size() >= 3 && !lines.contains(first->first))
-      strays.push_back(
-          {static_cast<std::uint32_t>(first->first >> 32), static_cast<std::uint32_t>(first->first)});
-    first = last;
-  }
-  return strays;
+  std::unordered_set<Key> kept;
+  for (const auto& [u, v] : mesh.lines.edges) kept.insert(key_of(u, v));
+  std::vector<std::array<std::uint32_t, 2>> edges = lines_of_facets(mesh, mesh.lines.delta_mm).edges;
+  std::erase_if(edges, [&](const auto& edge) { return kept.contains(key_of(edge[0], edge[1])); });
+  return edges;
 }
 
 }  // namespace podm

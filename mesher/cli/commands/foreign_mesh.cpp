@@ -61,7 +61,7 @@ class MeshBuilder {
     orient_cells();
     find_facets();
     if (const auto delta_mm = file_.promised_lines_delta_mm) {
-      find_lines(mesh_, *delta_mm);
+      mesh_.lines = lines_of_facets(mesh_, *delta_mm);
       mesh_.lines.are_claimed = !file_.unclaimed.contains("lines");
       file_.other_cells.erase("lines");
     }

@@ -14,7 +14,7 @@ TEST(LinesOfFacets, AreAllEdgesWhereThreeLabelsMeet) {
     add_lines(expected);
     ASSERT_FALSE(expected.lines.edges.empty());
     TetMesh found = shuffled(expected, 7);
-    find_lines(found, expected.lines.delta_mm);
+    found.lines = lines_of_facets(found, expected.lines.delta_mm);
     canonicalize(expected);
     canonicalize(found);
     EXPECT_TRUE(same_mesh(found, expected)) << size;
@@ -23,10 +23,10 @@ TEST(LinesOfFacets, AreAllEdgesWhereThreeLabelsMeet) {
 }
 
 TEST(LinesOfFacets, AMeshOfOneLabelHasNone) {
-  TetMesh mesh = make_kuhn_mesh(3, 1, [](int, int, int) { return LabelIndex{1}; });
-  find_lines(mesh, 2);
-  EXPECT_TRUE(mesh.lines.edges.empty());
-  EXPECT_TRUE(mesh.lines.are_kept());
+  const TetMesh mesh = make_kuhn_mesh(3, 1, [](int, int, int) { return LabelIndex{1}; });
+  const MeshLines lines = lines_of_facets(mesh, 2);
+  EXPECT_TRUE(lines.edges.empty());
+  EXPECT_TRUE(lines.are_kept());
 }
 
 }  // namespace
