@@ -105,7 +105,7 @@ stress: build
 	@scripts/setup run
 	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py \
 	  $(if $(SEED),--seed $(SEED),--seconds $(SECONDS) --keep stress_seeds.txt $(if $(FIRST),--first $(FIRST)) \
-	  $(if $(RECORD),--record "$(abspath $(RECORD))"))
+	  $(if $(RECORD),--record "$(abspath $(RECORD))")) $(SHAPES)
 
 kill-matrix: build
 	@scripts/setup run

@@ -162,15 +162,15 @@ def nifti_voxels(path):
 class Phantoms:
     """Phantoms drawn once by the program, kept as arrays."""
 
-    def __init__(self, program, folder):
-        self.arrays = {}
-        for name, size in PHANTOMS:
+    def __init__(self, program, folder, names=PHANTOMS):
+        self.names, self.arrays = names, {}
+        for name, size in names:
             path = os.path.join(folder, f"{name}@{size}.nii")
             subprocess.run([program, "phantom", name, "--size", str(size), "-o", path], check=True, capture_output=True)
             self.arrays[name, size] = nifti_voxels(path)
 
     def draw(self, rng):
-        return self.arrays[PHANTOMS[rng.integers(0, len(PHANTOMS))]].copy()
+        return self.arrays[self.names[rng.integers(0, len(self.names))]].copy()
 
 
 def drawn_size(rng, longest):

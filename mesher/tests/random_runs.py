@@ -62,16 +62,16 @@ def divisor(rng, number):
 
 class Sizes:
     """Radius and delta, mm; 0 leaves either to the mesher. They are so large that at most some thousands of cells are
-    expected.
+    expected: 10^x, where x is in the given range.
     """
 
-    def __init__(self, rng, image):
+    def __init__(self, rng, image, cells_log10=(2.3, 3.9)):
         self.voxel_mm = image.voxel_mm()
         self.volume_mm3, self.area_mm2 = image.volume_and_area()
         self.radius = self.voxel_mm * power_of_2(rng, -0.5, 3) if chance(rng, 0.9) else 0
         self.delta = self.voxel_mm * power_of_2(rng, -1, 1.5) if chance(rng, 0.35) else 0
         self.longest_mm = max(n * s for n, s in zip(image.voxels.shape, image.spacing))
-        most = 10 ** rng.uniform(2.3, 3.9)
+        most = 10 ** rng.uniform(*cells_log10)
         while self.expected_cells() > most and self.sampling() < 0.4 * self.longest_mm:
             self.radius *= 1.1
             if self.delta or not 0 < self.radius < 4 * self.voxel_mm:

@@ -1,8 +1,9 @@
 """Random runs of many workers on small and unusual images: each must end as requested, verify, and equal its replay.
 
-A seed alone determines each run. `--seed SEED` repeats one and keeps its files; a run on threads may need several
-attempts to fail again. $PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and names its seed and
-command.
+A seed determines each run, together with the options for shapes: with --lines, --box or --thin images and runs are
+those of random_shapes.py, otherwise those of random_runs.py. `--seed SEED` repeats one and keeps its files; a run on
+threads may need several attempts to fail again. $PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and
+names its seed and command.
 """
 
 import argparse
@@ -25,6 +26,7 @@ import numpy
 
 import random_images
 import random_runs
+import random_shapes
 from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
@@ -59,12 +61,16 @@ def judge(run, record, process):
         raise Failed(f"ended early by the {reason}, which was not requested{said}")
     if record["cells"] and not always <= set(verdicts):
         raise Failed(f"was verified for {sorted(verdicts)} only{said}")
-    due = verdicts if reason == "complete" else always & set(verdicts)
-    failed = sorted(claim for claim in due if verdicts[claim] != "pass")
+    # A file promises its lines only if it has them, however the run ended.
+    due = set(verdicts) if reason == "complete" else (always | {"lines"}) & set(verdicts)
+    differences = (record.get("thin_layers") or {}).get("differences", [])
+    failed = sorted(claim for claim in due - ({"topology"} if differences else set()) if verdicts[claim] != "pass")
     if failed:
         raise Failed(f"ended as {reason}, and {', '.join(failed)} do not pass{said}")
-    is_whole = reason == "complete" and record["cells"] > 0
+    is_whole = reason == "complete" and record["cells"] > 0 and not differences
     unmet = {name: misses for name, misses in record["guarantees"].items() if misses} if reason == "complete" else {}
+    if differences and unmet.get("topology") == len(differences):
+        del unmet["topology"]  # each is listed, at the least delta
     if not record["cells"]:
         unmet.pop("missing_labels", None)  # judge_empty decides if there had to be a cell
     if unmet or (process.returncode == 0) != is_whole:
@@ -104,12 +110,16 @@ def carry_out(run, folder):
     call(PROGRAM, "replay", image, *run.selection, log)
     if summary["cells"] and os.path.exists(schedule):
         call(VERIFIER, mesh, "--claims", "conformity", *leaves)
-    written = {os.path.basename(path) for path in (image, mesh, log, record, schedule)} | {"out_facets.vtu"}
+    written = {os.path.basename(path) for path in (image, mesh, log, record, schedule)}
+    written |= {"out_facets.vtu"} | ({"out_lines.vtu"} if summary["lines"] else set())
     if left := set(os.listdir(folder)) - written:
         raise Failed(f"left behind {sorted(left)}")
     if not summary["cells"] and summary["stop_reason"] == "complete":
         judge_empty(run, summary["used"]["delta_mm"])
-    return "no cell" if not summary["cells"] else summary["stop_reason"]
+    if not summary["cells"]:
+        return "no cell"
+    claimed = f", lines {'' if summary['lines']['is_claimed'] else 'not '}claimed" if summary["lines"] else ""
+    return summary["stop_reason"] + claimed
 
 
 def fault_of(run, folder):
@@ -130,15 +140,30 @@ def kinds_of(run):
              "damage": sorted(set(run.image.damages)) or ["none"],
              "voxel type": [random_images.TYPES[run.image.datatype].__name__]}
     rare = {"--target-elements", "--radius-of", "--delta", "--leaf-size", "--drop", "--labels", "--merge", "--pin",
-            "--topology", "--max-elements", "--max-seconds", "--min-dihedral"}
+            "--topology", "--max-elements", "--max-seconds", "--min-dihedral", "--smooth", "--lines-delta"}
     return kinds | {"option": sorted(given & rare)}
+
+
+class Draws:
+    """Draws the run of a seed, a pair of its number and the options for shapes."""
+
+    def __init__(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.phantoms = random_images.Phantoms(PROGRAM, folder)
+            self.phantoms_of_shapes = random_images.Phantoms(PROGRAM, folder, random_shapes.PHANTOMS)
+
+    def __call__(self, seed):
+        number, shape_options = seed
+        if shape_options:
+            return random_shapes.draw(number, shape_options, self.phantoms_of_shapes)
+        return random_runs.draw(number, self.phantoms)
 
 
 class Stress:
     """Runs on all processors at once until the budget is spent; counts and reports them."""
 
-    def __init__(self, phantoms, seeds, seconds, keep):
-        self.phantoms, self.seeds, self.keep = phantoms, seeds, keep
+    def __init__(self, draws, seeds, seconds, keep):
+        self.draws, self.seeds, self.keep = draws, seeds, keep
         self.start = time.monotonic()
         self.deadline = self.start + seconds if seconds else float("inf")
         self.lock = threading.Lock()
@@ -153,33 +178,35 @@ class Stress:
     def work(self):
         while (seed := self.next_seed()) is not None:
             start = time.monotonic()
-            run = random_runs.draw(seed, self.phantoms)
+            run = self.draws(seed)
             with tempfile.TemporaryDirectory(dir=IN_MEMORY, prefix="podm-stress-") as folder:
                 fault, ended = fault_of(run, folder)
             with self.lock:
-                self.slowest = max(self.slowest, (round(time.monotonic() - start, 1), seed))
-                self.count(run, ended, fault)
+                self.slowest = max(self.slowest, (round(time.monotonic() - start, 1), seed[0]))
+                self.count(run, seed[1], ended, fault)
 
-    def count(self, run, ended, fault):
+    def count(self, run, shape_options, ended, fault):
         self.runs += 1
         self.last_seed = run.seed if self.last_seed is None else max(run.seed, self.last_seed)
         for kind, names in (kinds_of(run) | {"ended": [ended]}).items():
             self.counts[kind].update(names)
         if fault:
             self.failed_seeds.append(run.seed)
-            self.report_failure(run, fault)
+            self.report_failure(run, shape_options, fault)
         if sys.stderr.isatty() or self.runs % 500 == 0:
             end = "" if sys.stderr.isatty() else "\n"
             print(f"\r{self.runs} runs in {self.seconds():.0f} s, {len(self.failed_seeds)} failed ", end=end,
                   file=sys.stderr, flush=True)
 
-    def report_failure(self, run, fault):
+    def report_failure(self, run, shape_options, fault):
+        words = " ".join(shape_options)
         print(f"\nseed {run.seed}, {run.image.family} ({', '.join(run.image.damages) or 'sound'}): podm mesh "
               f"{run.image_name} {shlex.join(run.selection + run.options)}\n{fault}\n"
-              f"again: make stress SEED={run.seed}", file=sys.stderr)
+              f"again: make stress SEED={run.seed}" + (f" SHAPES='{words}'" if words else ""), file=sys.stderr)
         if self.keep:
             with open(self.keep, "a") as file:
-                file.write(f"{run.seed}  # {run.algorithm} on {run.executor}, {run.image.family}\n")
+                seed = f"{run.seed} {words}".rstrip()
+                file.write(f"{seed}  # {run.algorithm} on {run.executor}, {run.image.family}\n")
 
     def seconds(self):
         return time.monotonic() - self.start
@@ -211,15 +238,14 @@ class Stress:
 
 
 def seeds_in(path):
-    """Returns the first word of each line that is not a comment."""
+    """Returns the seed of each line that is not a comment: its number, then its options for shapes."""
     lines = (line.split("#")[0].split() for line in pathlib.Path(path).read_text().splitlines())
-    return [int(words[0]) for words in lines if words]
+    return [(int(words[0]), words[1:]) for words in lines if words]
 
 
-def repeat(seed, phantoms):
+def repeat(run):
     """Repeats one run and keeps its files. Returns its exit code."""
-    run = random_runs.draw(seed, phantoms)
-    folder = tempfile.mkdtemp(prefix=f"podm-stress-{seed}-")
+    folder = tempfile.mkdtemp(prefix=f"podm-stress-{run.seed}-")
     print(f"{run.image.family} of {run.image.voxels.shape} voxels ({', '.join(run.image.damages) or 'sound'}) in "
           f"{folder}\npodm mesh {run.image_name} {shlex.join(run.selection + run.options)}", file=sys.stderr)
     fault, ended = fault_of(run, folder)
@@ -239,23 +265,34 @@ def parse_arguments():
     parser.add_argument("--first", type=int, metavar="SEED", help="seed of the first run; others follow [any]")
     parser.add_argument("--keep", metavar="FILE", help="append the seeds that fail to FILE")
     parser.add_argument("--record", metavar="FILE", help="write the counts as JSON")
+    shapes = parser.add_argument_group("options of podm mesh for shapes, on images of random_shapes.py")
+    shapes.add_argument("--lines", action="store_true")
+    shapes.add_argument("--box", choices=["flat"])
+    shapes.add_argument("--thin", choices=["keep"])
     return parser.parse_args()
+
+
+def shape_options_of(options):
+    """Returns the options for shapes as words."""
+    words = ["--lines"] if options.lines else []
+    words += ["--box", options.box] if options.box else []
+    return words + (["--thin", options.thin] if options.thin else [])
 
 
 def main():
     options = parse_arguments()
-    with tempfile.TemporaryDirectory() as folder:
-        phantoms = random_images.Phantoms(PROGRAM, folder)
+    draws, shape_options = Draws(), shape_options_of(options)
     if options.seed is not None:
-        return repeat(options.seed, phantoms)
+        return repeat(draws((options.seed, shape_options)))
     first = options.first if options.first is not None else int.from_bytes(os.urandom(4), "little")
-    seeds = itertools.count(first) if options.runs is None else range(first, first + options.runs)
+    numbers = itertools.count(first) if options.runs is None else range(first, first + options.runs)
+    seeds = ((number, shape_options) for number in numbers)
     if options.seeds:
-        seeds = seeds_in(options.seeds)
+        seeds = iter(seeds_in(options.seeds))
     else:
         print(f"seeds from {first} on", file=sys.stderr)
     is_endless = options.runs is None and not options.seeds
-    stress = Stress(phantoms, iter(seeds), (options.seconds or 600) if is_endless else None, options.keep)
+    stress = Stress(draws, seeds, (options.seconds or 600) if is_endless else None, options.keep)
     stress()
     print(f"\r{stress.summary()}", file=sys.stderr)
     if options.record:

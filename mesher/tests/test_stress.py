@@ -12,25 +12,41 @@ import numpy
 
 import random_images
 import random_runs
+import random_shapes
 import stress
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 SEEDS = range(1, 401)
+SHAPES = [["--lines"], ["--box", "flat"], ["--thin", "keep"]]
 
 
 class Draws(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with tempfile.TemporaryDirectory() as folder:
-            cls.phantoms = random_images.Phantoms(PROGRAM, folder)
-        cls.runs = [random_runs.draw(seed, cls.phantoms) for seed in SEEDS]
+        cls.draw = staticmethod(stress.Draws())
+        cls.runs = [cls.draw((seed, [])) for seed in SEEDS]
+        cls.shapes = [cls.draw((seed, SHAPES[seed % len(SHAPES)])) for seed in SEEDS]
 
     def test_a_run_follows_from_its_seed(self):
-        for run in self.runs[:20]:
-            again = random_runs.draw(run.seed, self.phantoms)
+        for run, shape_options in [*((run, []) for run in self.runs[:20]),
+                                   *((run, SHAPES[run.seed % len(SHAPES)]) for run in self.shapes[:20])]:
+            again = self.draw((run.seed, shape_options))
             self.assertEqual((run.selection, run.options), (again.selection, again.options))
             numpy.testing.assert_array_equal(run.image.voxels, again.image.voxels)
             numpy.testing.assert_array_equal(run.image.affine, again.image.affine)
+
+    def test_shapes_of_all_kinds_are_drawn_with_their_options(self):
+        counts = collections.Counter(name for run in self.shapes for names in stress.kinds_of(run).values()
+                                     for name in names)
+        for kind in [*(family.__name__ for family in random_shapes.FAMILIES), "podm", "podm-home", "pdr", "pdr-podm",
+                     "virtual", "threads", "--smooth", "--min-dihedral", "--lines-delta", "--max-elements"]:
+            self.assertGreater(counts[kind], 0, kind)
+        grains = [len(run.image.labels()) for run in self.shapes if run.image.family == "polycrystal"]
+        self.assertLess(min(grains), 6)
+        self.assertGreater(max(grains), 150)
+        for run in self.shapes:
+            self.assertEqual(run.options[-len(SHAPES[run.seed % len(SHAPES)]):], SHAPES[run.seed % len(SHAPES)])
+            self.assertTrue(run.image.voxels.any())
 
     def test_every_kind_is_drawn(self):
         counts = collections.Counter(name for run in self.runs for names in stress.kinds_of(run).values()
@@ -49,7 +65,8 @@ class Draws(unittest.TestCase):
         def kinds(runs):
             return {(kind, name) for run in runs for kind, names in stress.kinds_of(run).items() for name in names}
         kept = stress.seeds_in(pathlib.Path(__file__).with_name("stress_seeds.txt"))
-        self.assertLessEqual(kinds(self.runs), kinds([random_runs.draw(seed, self.phantoms) for seed in kept]))
+        kept = [self.draw(seed) for seed in kept]
+        self.assertLessEqual(kinds(self.runs), kinds(kept))
 
     def test_images_are_label_images_of_spacings_up_to_10_to_1(self):
         for run in self.runs:
@@ -62,8 +79,8 @@ class Draws(unittest.TestCase):
     def test_seeds_that_failed_are_read_with_their_comments(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "seeds.txt"
-            path.write_text("# a comment\n\n12\n7  # pdr on threads\n")
-            self.assertEqual(stress.seeds_in(path), [12, 7])
+            path.write_text("# a comment\n\n12\n7 --box flat  # pdr on threads\n")
+            self.assertEqual(stress.seeds_in(path), [(12, []), (7, ["--box", "flat"])])
 
 
 class Images(PodmTestCase):
@@ -81,7 +98,7 @@ class Images(PodmTestCase):
 
 def record(**changes):
     sound = {"stop_reason": "complete", "cells": 10, "guarantees": {"radius": 0},
-             "verdicts": dict.fromkeys(["size", *stress.ALWAYS], "pass"), "optimization": None}
+             "verdicts": dict.fromkeys(["size", *stress.ALWAYS], "pass"), "optimization": None, "lines": None}
     return sound | changes
 
 
@@ -108,6 +125,17 @@ class Judge(unittest.TestCase):
         self.assert_fault(1, ["time limit"], stop_reason="memory limit")
         self.assert_fault(1, ["time limit"], stop_reason="time limit",
                           verdicts=record()["verdicts"] | {"delaunay": "fail"})
+
+    def test_promised_lines_are_there_even_if_a_run_ends_early(self):
+        self.assert_fault(1, ["time limit"], stop_reason="time limit",
+                          verdicts=record()["verdicts"] | {"lines": "fail"})
+
+    def test_topologies_that_differ_must_be_listed(self):
+        differing = {"guarantees": {"topology": 1}, "verdicts": record()["verdicts"] | {"topology": "fail"}}
+        self.judge(1, thin_layers={"differences": [{}]}, **differing)
+        self.assert_fault(1, thin_layers={"differences": [{}, {}]}, **differing)
+        self.assert_fault(0, thin_layers={"differences": [{}]}, **differing)
+        self.assert_fault(1, thin_layers={"differences": []}, **differing)
 
     def test_meshes_without_a_cell(self):
         self.judge(1, cells=0, verdicts={})
@@ -146,7 +174,7 @@ class Faults(PodmTestCase):
 
     def fault_of_no_cell(self, delta_mm):
         empty = json.dumps({"stop_reason": "complete", "cells": 0, "guarantees": {}, "verdicts": {},
-                            "optimization": None, "used": {"delta_mm": delta_mm}})
+                            "optimization": None, "lines": None, "used": {"delta_mm": delta_mm}})
         return self.fault_of(
             f"""case "$*" in
             *run.jsonl*) while [ "$1" != --record ]; do shift; done; echo '{empty}' > "$2"; exit 1;;
