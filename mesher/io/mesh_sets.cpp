@@ -31,20 +31,26 @@ std::vector<Patch> find_patches(const TetMesh& mesh, const LabelPairs& pairs) {
 
 std::string name_of_side(std::size_t side) { return std::string("box ") + kSideNames[side]; }
 
+FacetPatches::FacetPatches(const TetMesh& mesh)
+    : names(mesh.labels), pairs(mesh.facet_labels), patches(find_patches(mesh, pairs)) {}
+
+std::size_t FacetPatches::patch_of(const TetMesh& mesh, std::size_t facet) const {
+  const Patch patch{pairs.number_of(mesh.facet_labels[facet]), side_of_facet(mesh, facet)};
+  return static_cast<std::size_t>(std::lower_bound(patches.begin(), patches.end(), patch) - patches.begin());
+}
+
+std::string FacetPatches::name_of(const Patch& patch) const {
+  const std::string of_pair = names.of_pair(pairs[patch.pair]);
+  return patch.side == 0 ? of_pair : of_pair + " " + name_of_side(number_of_side(patch.side));
+}
+
 MeshSets::MeshSets(const TetMesh& mesh)
-    : names(mesh.labels),
-      pairs(mesh.facet_labels),
+    : FacetPatches(mesh),
       cells_of_label(mesh.cells.size(), mesh.labels.size(),
                      [&](std::size_t i) { return mesh.cell_labels[i]; }),
       facets_of_pair(mesh.facets.size(), pairs.size(),
                      [&](std::size_t i) { return pairs.number_of(mesh.facet_labels[i]); }),
-      patches(find_patches(mesh, pairs)),
-      facets_of_patch(mesh.facets.size(), patches.size(),
-                      [&](std::size_t i) {
-                        const Patch patch{pairs.number_of(mesh.facet_labels[i]), side_of_facet(mesh, i)};
-                        return static_cast<std::size_t>(
-                            std::lower_bound(patches.begin(), patches.end(), patch) - patches.begin());
-                      }),
+      facets_of_patch(mesh.facets.size(), patches.size(), [&](std::size_t i) { return patch_of(mesh, i); }),
       facets_of_side(mesh.facets.size(), kNumSides + 1,
                      [&](std::size_t i) { return number_of_side(side_of_facet(mesh, i)); }),
       edges_of_line(mesh.lines.edges.size(), mesh.lines.labels_of_line.size(),
@@ -60,11 +66,6 @@ MeshSets::MeshSets(const TetMesh& mesh)
   });
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     volume_tags.push_back(static_cast<std::int32_t>(values_are_tags ? mesh.labels[i].value : i));
-}
-
-std::string MeshSets::name_of(const Patch& patch) const {
-  const std::string of_pair = names.of_pair(pairs[patch.pair]);
-  return patch.side == 0 ? of_pair : of_pair + " " + name_of_side(number_of_side(patch.side));
 }
 
 std::vector<std::uint32_t> vertices_of_line(const MeshSets& sets, const MeshLines& lines, std::size_t line) {

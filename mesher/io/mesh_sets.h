@@ -24,15 +24,25 @@ struct Patch {
 /// The name of the set of all facets on a side: "box i-".
 std::string name_of_side(std::size_t side);
 
-struct MeshSets {
-  explicit MeshSets(const TetMesh& mesh);
+/// The facets by pair of labels and side, for formats in which a facet has one number.
+struct FacetPatches {
+  explicit FacetPatches(const TetMesh& mesh);
 
   LabelNames names;
   LabelPairs pairs;
-  Grouping cells_of_label, facets_of_pair;
-  std::vector<LabelIndex> volumes;  ///< the labels that have cells
   /// The patches that have facets, sorted. With an open box they are the pairs. Each facet is in one patch.
   std::vector<Patch> patches;
+  /// Returns the position of a facet's patch; `mesh` is that of the constructor.
+  std::size_t patch_of(const TetMesh& mesh, std::size_t facet) const;
+  /// Returns the name of a patch: "kidney|outside", or "kidney|outside box i-".
+  std::string name_of(const Patch& patch) const;
+};
+
+struct MeshSets : FacetPatches {
+  explicit MeshSets(const TetMesh& mesh);
+
+  Grouping cells_of_label, facets_of_pair;
+  std::vector<LabelIndex> volumes;  ///< the labels that have cells
   Grouping facets_of_patch;
   std::vector<std::size_t> sides;  ///< the sides that have facets
   Grouping facets_of_side;         ///< by side; the last group is on none
@@ -41,8 +51,6 @@ struct MeshSets {
   /// The tag of each label: its value if the values of all `volumes` are positive 32-bit integers, otherwise
   /// its position.
   std::vector<std::int32_t> volume_tags;
-  /// Returns the name of a patch: "kidney|outside", or "kidney|outside box i-".
-  std::string name_of(const Patch& patch) const;
   /// Returns the tag of a side, after those of all pairs.
   std::int32_t side_tag(std::size_t side) const { return surface_tag(pairs.size() + side); }
   /// Returns the tag of a pair; tags count from 1.

@@ -104,6 +104,10 @@ void write_facets(const TetMesh& mesh, AtomicFile& file) {
         side == 0 ? "label_a" : "label_b", mesh.facets.size(),
         [&](std::size_t i) { return mesh.labels[mesh.facet_labels[i][side]].value; }, file);
   }
+  if (mesh.is_box_flat)
+    put_scalars(
+        kBoxSideArray, mesh.facets.size(), [&](std::size_t i) { return side_number_of_facet(mesh, i); },
+        file);
   file.write(fmt::format("\nPOINT_DATA {}", subset.vertices().size()));
   put_scalars(
       "vertex", subset.vertices().size(), [&](std::size_t i) { return subset.vertices()[i]; }, file);

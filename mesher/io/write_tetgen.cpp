@@ -1,12 +1,13 @@
 // TetGen's .node, .ele and .face, which together are one mesh. The attribute of a tetrahedron is its label
-// value. The marker of a face numbers its label pair. Comments at the ends of .ele and .face name labels and
-// pairs. Numbers count from 1. Format: TetGen's manual, "File formats".
+// value. The marker of a face numbers its label pair, on a side of a flat box the pair there. Comments at the
+// ends of .ele and .face name labels and pairs. Numbers count from 1. Format: TetGen's manual, "File
+// formats".
 #include <deque>
 #include <filesystem>
 
 #include "files/atomic_file.h"
-#include "io/label_table.h"
 #include "io/mesh_formats.h"
+#include "io/mesh_sets.h"
 #include "io/promises.h"
 #include "io/text_file.h"
 
@@ -38,19 +39,17 @@ void write_elements(const TetMesh& mesh, const LabelNames& names, AtomicFile& fi
   text.flush();
 }
 
-void write_faces(const TetMesh& mesh, const LabelNames& names, AtomicFile& file) {
+void write_faces(const TetMesh& mesh, const FacetPatches& sets, AtomicFile& file) {
   TextFile text(file);
-  const LabelPairs pairs(mesh.facet_labels);
   text.print(FMT_COMPILE("{} 1\n"), mesh.facets.size());  // markers
   for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
     const auto& [a, b, c] = mesh.facets[i];
-    const std::size_t marker = pairs.number_of(mesh.facet_labels[i]) + 1;
-    text.print(FMT_COMPILE("{} {} {} {} {}\n"), i + 1, a + 1, b + 1, c + 1, marker);
+    text.print(FMT_COMPILE("{} {} {} {} {}\n"), i + 1, a + 1, b + 1, c + 1, sets.patch_of(mesh, i) + 1);
   }
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [a, b] = pairs[i];
+  for (std::size_t i = 0; i < sets.patches.size(); ++i) {
+    const auto [a, b] = sets.pairs[sets.patches[i].pair];
     text.print(FMT_COMPILE("# pair {} {} {} {}\n"), i + 1, mesh.labels[a].value, mesh.labels[b].value,
-               names.of_pair(pairs[i]));
+               sets.name_of(sets.patches[i]));
   }
   text.flush();
 }
@@ -61,12 +60,12 @@ void write_tetgen(const TetMesh& mesh, const std::string& path) {
   const auto beside = [&path](const char* extension) {
     return std::filesystem::path(path).replace_extension(extension).string();
   };
-  const LabelNames names(mesh.labels);
+  const FacetPatches sets(mesh);
   std::deque<AtomicFile> files;
   for (const char* extension : {".node", ".ele", ".face"}) files.emplace_back(beside(extension));
   write_nodes(mesh, files[0]);
-  write_elements(mesh, names, files[1]);
-  write_faces(mesh, names, files[2]);
+  write_elements(mesh, sets.names, files[1]);
+  write_faces(mesh, sets, files[2]);
   publish_together(files);
 }
 

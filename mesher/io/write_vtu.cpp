@@ -181,10 +181,8 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
   }
   if (mesh.is_box_flat)
     grid.cell_data.push_back(
-        make_array<std::uint8_t>("UInt8", "box_side", mesh.facets.size(), [&mesh](std::size_t i) {
-          const SideMask side = side_of_facet(mesh, i);
-          return side == 0 ? 0 : std::countr_zero(side) + 1;
-        }));
+        make_array<std::uint8_t>("UInt8", kBoxSideArray, mesh.facets.size(),
+                                 [&mesh](std::size_t i) { return side_number_of_facet(mesh, i); }));
   return grid;
 }
 

@@ -14,6 +14,9 @@ namespace podm {
 /// The name that VTK's own filters give to the array of points' numbers in the whole mesh.
 inline constexpr const char* kGlobalIds = "GlobalNodeIds";
 
+/// The name of the array of the facets' sides of a flat box, in files of facets.
+inline constexpr const char* kBoxSideArray = "box_side";
+
 /// Returns "x_facets.vtu" for "x.vtu", and likewise for any extension.
 std::string facets_path_of(const std::string& path);
 /// Returns "x_lines.vtu" for "x.vtu", and likewise for any extension.

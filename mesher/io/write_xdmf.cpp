@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <filesystem>
 #include <limits>
 
@@ -231,10 +230,7 @@ void write_xdmf_part(const std::string& file, const std::string& path, const Xdm
       [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[mesh.facet_labels[i][side]].value; });
   if (arrays.facet_sides)
     write_rows<std::int32_t>(to, *arrays.facet_sides, part.first_facet, mesh.facets.size(),
-                             [&](std::uint64_t i, std::uint64_t) {
-                               const SideMask side = side_of_facet(mesh, i);
-                               return side == 0 ? 0 : std::countr_zero(side) + 1;
-                             });
+                             [&](std::uint64_t i, std::uint64_t) { return side_number_of_facet(mesh, i); });
   if (has_lines(mesh)) write_lines(to, part, arrays);
   to.finish();
 }

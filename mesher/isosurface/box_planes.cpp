@@ -50,17 +50,27 @@ SurfacePoint BoxPlanes::moved_onto_sides(const Point& p, double voxels) const {
   return moved;
 }
 
-SurfacePoint BoxPlanes::onto_edge(const SurfacePoint& z, double reach_mm) const {
-  SurfacePoint moved = z;
-  double left = reach_mm * reach_mm;
+SurfacePoint BoxPlanes::onto_planes(const SurfacePoint& z, double voxels, double reach_mm) const {
+  struct Plane {
+    double away, at;
+    std::size_t axis;
+    SideMask side;
+  };
+  std::array<Plane, 3> nearest;
   for (std::size_t a = 0; a < 3; ++a) {
     const Axis& axis = axes_[a];
-    const double at = z.*kCoordinates[a], to_low = at - axis.low, to_high = axis.high - at;
-    const double away = std::min(to_low, to_high);
-    if (away == 0 || away * away > left) continue;
-    left -= away * away;
-    moved.*kCoordinates[a] = to_low < to_high ? axis.low : axis.high;
-    moved.sides |= to_low < to_high ? axis.low_side : axis.high_side;
+    const double to_low = z.*kCoordinates[a] - axis.low, to_high = axis.high - z.*kCoordinates[a];
+    nearest[a] = to_low < to_high ? Plane{to_low, axis.low, a, axis.low_side}
+                                  : Plane{to_high, axis.high, a, axis.high_side};
+  }
+  std::ranges::sort(nearest, {}, &Plane::away);
+  SurfacePoint moved = z;
+  double left = reach_mm * reach_mm;
+  for (const Plane& plane : nearest) {
+    if (plane.away * plane.away > left || plane.away > voxels * axes_[plane.axis].voxel_mm) continue;
+    left -= plane.away * plane.away;
+    moved.*kCoordinates[plane.axis] = plane.at;
+    moved.sides |= plane.side;
   }
   return moved;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "geometry/point.h"
@@ -28,8 +29,14 @@ class BoxPlanes {
   SurfacePoint clamped(const Point& p) const { return moved_onto_sides(p, 0); }
   /// Moves z onto all planes within kSnap voxels of it, and into the box.
   SurfacePoint snapped(const Point& z) const { return moved_onto_sides(z, kSnap); }
-  /// Moves z, which is on a side, onto one other plane or more that are within `reach_mm` together.
-  SurfacePoint onto_edge(const SurfacePoint& z, double reach_mm) const;
+  /// The same, but only onto the nearest planes that are within `reach_mm` together.
+  SurfacePoint snapped(const SurfacePoint& z, double reach_mm) const {
+    return onto_planes(z, kSnap, reach_mm);
+  }
+  /// Moves z onto the nearest planes that are within `reach_mm` together.
+  SurfacePoint onto_planes(const SurfacePoint& z, double reach_mm) const {
+    return onto_planes(z, std::numeric_limits<double>::infinity(), reach_mm);
+  }
   /// Moves z onto the planes of these sides.
   Point moved_onto(SideMask sides, const Point& z) const;
   /// The projection of a point in the box onto the nearest plane.
@@ -49,6 +56,7 @@ class BoxPlanes {
     SideMask low_side = 0, high_side = 0;
   };
   SurfacePoint moved_onto_sides(const Point& p, double voxels) const;
+  SurfacePoint onto_planes(const SurfacePoint& z, double voxels, double reach_mm) const;
 
   std::array<Axis, 3> axes_;  // of the working frame
 };

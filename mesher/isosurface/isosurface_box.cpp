@@ -101,7 +101,7 @@ std::optional<SurfacePoint> Oracle<Reads>::exit_through_side(const Point& a, con
 
 template <class Reads>
 SurfacePoint Oracle<Reads>::moved_onto_edge(const SurfacePoint& z, double reach_mm) const {
-  const SurfacePoint moved = box_->onto_edge(z, reach_mm);
+  const SurfacePoint moved = box_->onto_planes(z, reach_mm);
   return label_clamped(moved) != kBackground ? moved : z;
 }
 

@@ -327,9 +327,8 @@ std::optional<SurfaceCenter> RulesOn<Cells>::center_on_side(const Examination& t
 // within `reach`.
 template <class Cells>
 SurfacePoint RulesOn<Cells>::moved_to_sides(const SurfacePoint& z, double reach) const {
-  const SurfacePoint snapped = isosurface_.box()->snapped(z);
-  if (squared_distance(z, snapped) > reach * reach) return z;
-  if (snapped.sides == 0) return snapped;
+  const SurfacePoint snapped = isosurface_.box()->snapped(z, reach);
+  if (snapped.sides == 0) return z;
   return ask_either([&](const auto& oracle) { return oracle.moved_onto_edge(snapped, reach); });
 }
 

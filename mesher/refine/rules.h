@@ -59,9 +59,9 @@
 //   vertices: the boundary is closed, and facets in different planes can only meet there.
 //   The planes are reached, up to the floor. Let a be a vertex off the side and z the point at which its
 //   facet leaves. If a is on another side, the edge between the two is nearer to z than a is. If it is on an
-//   interface, it is 0.45 voxels or more from the plane (BoxPlanes::snapped), unless its move to the plane
-//   would have left the ball of its cell. Within half a voxel of the plane the interface stands at right
-//   angles to it. Facets that the floor leaves off their
+//   interface, it is 0.45 voxels or more from the plane (BoxPlanes::snapped), or as far as R3 may move its
+//   point: half of the radius of an empty ball. Planes are tried one by one, the nearest first. Within half a
+//   voxel of the plane the interface stands at right angles to it. Facets that the floor leaves off their
 //   side are counted (Guarantees::off_sides).
 // R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
 // measured.

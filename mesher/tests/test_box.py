@@ -1,5 +1,6 @@
 """podm mesh --box flat: objects end in the planes of the image's box, in any frame, and podm-verify proves it."""
 
+import collections
 import math
 import unittest
 
@@ -63,8 +64,26 @@ class Box(PodmTestCase):
         self.assertEqual(len(surface.splitlines()), counts["j-"])
         self.record_of(image, output="out.exo")
         self.assertIn(b"box k-", (self.folder / "out.exo").read_bytes())
+        self.record_of(image, output="out.vtk")
+        self.assertIn(b"SCALARS box_side", (self.folder / "out_facets.vtk").read_bytes())
         self.record_of(image, output="out.xdmf")
         self.assertIn('Name="side"', (self.folder / "out.xdmf").read_text())
+
+    def test_a_number_is_of_one_pair_on_one_side(self):
+        """Medit and TetGen have one number per facet: it names the pair of labels and the side."""
+        image = self.image(FRAMES["parallel"])
+        counts = self.record_of(image, output="out.mesh")["facets_of_sides"]
+        self.record_of(image, output="out.node")
+        medit, tetgen = ((self.folder / name).read_text().splitlines() for name in ("out.mesh", "out.face"))
+        first = medit.index("Triangles") + 2
+        triangles = medit[first:first + int(medit[first - 1])]
+        faces = tetgen[1:1 + int(tetgen[0].split()[0])]
+        for lines, numbers in ((medit, triangles), (tetgen, faces)):
+            names = {row.split()[2]: row for row in lines if row.startswith("# pair ")}
+            found = collections.Counter(names[row.split()[-1]].partition(" box ")[2] for row in numbers)
+            del found[""]
+            self.assertEqual(found, {side: count for side, count in counts.items() if count})
+            self.assertIn("label 1|outside box i-", "\n".join(names.values()))
 
     def test_an_open_box_has_no_sides(self):
         self.assert_exit(run_podm("mesh", self.image(FRAMES["parallel"]), "-o", self.folder / "open.vtu", "--record",

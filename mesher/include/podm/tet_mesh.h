@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -44,6 +45,12 @@ inline SideMask side_of_facet(const TetMesh& mesh, std::size_t facet) {
   if (mesh.vertex_sides.empty() || mesh.facet_labels[facet][0] != kBackground) return 0;
   const auto& [a, b, c] = mesh.facets[facet];
   return mesh.vertex_sides[a] & mesh.vertex_sides[b] & mesh.vertex_sides[c];
+}
+
+/// The number of that side in mesh files: 1 to 6 in the order of kSideNames, 0 for none.
+inline std::uint8_t side_number_of_facet(const TetMesh& mesh, std::size_t facet) {
+  const SideMask side = side_of_facet(mesh, facet);
+  return side == 0 ? 0 : static_cast<std::uint8_t>(std::countr_zero(side) + 1);
 }
 
 }  // namespace podm

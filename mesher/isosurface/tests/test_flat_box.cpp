@@ -189,5 +189,20 @@ TEST(FlatBox, PlanesFollowPermutedAxes) {
   EXPECT_EQ(corner.sides, 1 << 0 | 1 << 3 | 1 << 5);
 }
 
+// A point that is near two planes moves onto one of them if both are too far together.
+TEST(FlatBox, PointsMoveOntoThePlanesThatAreWithinReach) {
+  LabelImage image = empty_image({4, 3, 2}, {1, 2, 3});
+  image.is_box_flat = true;
+  const BoxPlanes planes(image);  // from (-0.5, -1, -1.5)
+  const SurfacePoint z{{-0.1, -0.8, 0.5}};
+  EXPECT_EQ(planes.snapped(z, 0.1).sides, 0);
+  EXPECT_EQ(planes.snapped(z, 0.3).sides, 1 << 2);
+  EXPECT_EQ(planes.snapped(z, 0.3).y, -1);
+  EXPECT_EQ(planes.snapped(z, 0.3).x, z.x);
+  EXPECT_EQ(planes.snapped(z, 0.5).sides, 1 << 0 | 1 << 2);
+  EXPECT_EQ(planes.snapped(z, 10).sides, 1 << 0 | 1 << 2);  // z is 0.67 voxels from the third plane
+  EXPECT_EQ(planes.onto_planes(z, 10).sides, 1 << 0 | 1 << 2 | 1 << 4);
+}
+
 }  // namespace
 }  // namespace podm::test
