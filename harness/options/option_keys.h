@@ -15,6 +15,9 @@ inline constexpr const char* kCopies = "copies";
 /// The keys of two checks of a mesh: it equals the replay of its operations, and it satisfies the fidelity
 /// claim of podm-verify (it follows the image closely).
 inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
+/// The key that measures how far the lines of image and mesh, where three or more labels meet, are from each
+/// other, also in meshes that do not promise lines.
+inline constexpr const char* kLineDistances = "line_distances";
 /// The key that hands the mesh to a finite-element solver: harness/solvers/README.md.
 inline constexpr const char* kSolve = "solve";
 /// The key that scales the number of a phantom's voxels with the number of threads.

@@ -26,6 +26,7 @@ constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();
 constexpr const char* kPerThread = "target_elements_per_thread";  // is replaced by target_elements
 constexpr const char* kPerRank = "target_elements_per_rank";      // is replaced by target_elements, too
 constexpr const char* kPowersOfTwo = "1..all";
+constexpr const char* kLines = "lines";
 constexpr const char* kMillimetres = "_mm";  // suffix of keys of lengths; options of podm have no suffix
 
 enum class Kind {
@@ -51,15 +52,16 @@ struct MesherOption {
 };
 
 // Options of the harness; they are not passed to a mesher.
-constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
-                                     kCopies, kCounters, kMeasure, kRanks,    kCarrier};
+constexpr std::array kHarnessOptions{kMesher, kSchedule, kReplay,   kFidelity, kLineDistances, kImageGrows,
+                                     kSolve,  kCopies,   kCounters, kMeasure,  kRanks,         kCarrier};
 
 // The harness supports these options for one process of podm, and not for ranks.
 constexpr std::array kSingleProcessOptions{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these options.
-constexpr std::array kCommonOptions{kMesher,         "radius_mm", "delta_mm", "delta_voxels",
-                                    kTargetElements, kPerThread,  "threads",  kSolve};
+constexpr std::array kCommonOptions{kMesher,         "radius_mm", "delta_mm",    "delta_voxels",
+                                    kTargetElements, kPerThread,  "threads",     kSolve,
+                                    kLines,          kFidelity,   kLineDistances};
 
 template <class Keys>
 bool is_among(const Keys& keys, std::string_view key) {
@@ -110,7 +112,7 @@ const std::vector<MesherOption>& mesher_options() {
       if (is_target) options.push_back({kPerRank, Kind::kCount, kMaxElements});
     }
     for (const LengthInVoxels& length : kLengthsInVoxels) options.push_back({length.key, Kind::kPositive});
-    for (const char* key : {kSchedule, kReplay, kFidelity, kSolve, kImageGrows})
+    for (const char* key : {kSchedule, kReplay, kFidelity, kLineDistances, kSolve, kImageGrows})
       options.push_back({key, Kind::kFlag});
     options.push_back({kCopies, Kind::kThreads});
     options.push_back({kCounters, Kind::kCounters});

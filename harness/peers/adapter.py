@@ -32,7 +32,7 @@ def refuse(reason):
     sys.exit(EXIT_ABSENT)
 
 
-def parse_arguments(version):
+def parse_arguments(version, keeps_lines=False):
     """The contract's options. Answers --version with version(options), which may call absent()."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--version", action="store_true")
@@ -42,10 +42,13 @@ def parse_arguments(version):
     parser.add_argument("--radius", type=float)
     parser.add_argument("--delta", type=float)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--lines", action="store_true")
     options = parser.parse_args()
     if options.version:
         print(version(options))
         sys.exit(0)
+    if options.lines and not keeps_lines:
+        refuse("this mesher keeps no lines where labels meet")
     for path in ("podm", "image", "output"):  # programs run in the folder of the output
         setattr(options, path, os.path.abspath(getattr(options, path)))
     return options

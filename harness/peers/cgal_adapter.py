@@ -2,11 +2,13 @@
 beside podm (GPL-3.0-or-later, built by `make peers`).
 
 The radius is CGAL's cell_size, delta its facet_size; facet angle 30 degrees and radius-edge ratio 1.93 are as podm's.
+Lines, which CGAL detects, have edges of at most 1.25 delta, as podm's have.
 CGAL reads INR, so a NIfTI image is rewritten, and the mesh is taken to the image's own frame.
 """
 import gzip
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +18,8 @@ import numpy as np
 
 NIFTI_TYPES = {2: "u1", 4: "i2", 8: "i4", 256: "i1", 512: "u2", 768: "u4"}
 HEADER_BYTES = 256  # of an INR file, or a multiple
+LINES_DELTA = 1.25  # podm's sampling distance of lines, times delta
+DETECTS_LINES = (5, 6)  # the first version of CGAL that does
 
 
 def version_of(program):
@@ -26,6 +30,10 @@ def version_of(program):
             adapter.absent(why_not_built(program))
         return subprocess.run([path, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     return version
+
+
+def detects_lines(version):
+    return tuple(map(int, re.match(r"CGAL (\d+)\.(\d+)", version).groups())) >= DETECTS_LINES
 
 
 def why_not_built(program):
@@ -96,7 +104,9 @@ PROMISES = ("structure", "delaunay", "radius_edge", "size", "conformity")
 def run(program, sequential, parallel, optimisers=(), promises=PROMISES):
     """The adapter, on CGAL's Sequential_tag for one thread unless it is parallel alone. `optimisers`, perturb and
     exude, follow on refinement, and void promises."""
-    options = adapter.parse_arguments(version_of(program))
+    options = adapter.parse_arguments(version_of(program), keeps_lines=True)
+    if options.lines and not detects_lines(version_of(program)(options)):
+        adapter.refuse("CGAL before 5.6 detects no lines in images")
     if options.threads > 1 and not parallel:
         sys.exit("a sequential mesher: threads = 1")
     threads = 0 if sequential and options.threads == 1 else options.threads
@@ -106,6 +116,8 @@ def run(program, sequential, parallel, optimisers=(), promises=PROMISES):
     switches = ["--threads", str(threads)]
     for switch, bound in (("--cell-size", options.radius), ("--facet-size", options.delta)):
         switches += [switch, repr(bound)] if bound else []
+    if options.lines:
+        switches += ["--lines"] + (["--edge-size", repr(LINES_DELTA * options.delta)] if options.delta else [])
     switches += ["--" + optimiser for optimiser in optimisers]
     log, _, peak_rss_bytes = adapter.run([path_of(program, options), write_image(inside("image.inr"), options, info),
                                           *switches, "--output", inside("voxels.mesh")], inside("cgal.log"))

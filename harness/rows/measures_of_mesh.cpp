@@ -43,6 +43,37 @@ Value fidelity_proved(const Row& row) { return proved(row, "fidelity"); }
 Value dihedral_proved(const Row& row) { return proved(row, "dihedral"); }
 Value radius_edge_proved(const Row& row) { return proved(row, "radius_edge"); }
 Value boundary_angles_proved(const Row& row) { return proved(row, "boundary_angles"); }
+Value lines_proved(const Row& row) { return proved(row, "lines"); }
+Value box_proved(const Row& row) { return proved(row, "box"); }
+Value topology_proved(const Row& row) { return proved(row, "topology"); }
+
+Value lines_share_kept(const Row& row) {
+  if (!row.mesh || !row.mesh->lines) return absent("rows have no lines");
+  return {row.mesh->lines->share_kept, ""};
+}
+
+// The smaller of the shares of both ways.
+Value lines_share_near(const Row& row) {
+  if (!row.mesh || !row.mesh->line_distances) return absent("rows have no line_distances");
+  const LineDistancesRecord& lines = *row.mesh->line_distances;
+  return {std::min(lines.image_to_mesh.share_near, lines.mesh_to_image.share_near), ""};
+}
+Value lines_share_found(const Row& row) {
+  if (!row.mesh || !row.mesh->line_distances) return absent("rows have no line_distances");
+  return {row.mesh->line_distances->image_to_mesh.share_near, ""};
+}
+
+Value box_ulps_off(const Row& row) {
+  return number_or_reason(row.mesh ? row.mesh->box_ulps_off : std::nullopt, "box_ulps_off");
+}
+Value interface_distance_mm(const Row& row) {
+  return number_or_reason(row.mesh ? row.mesh->interface_distance_mm : std::nullopt, "interface_distance_mm");
+}
+
+Value topology_differences(const Row& row) {
+  if (!row.mesh || !row.mesh->thin_layers) return absent("rows have no thin_layers");
+  return {static_cast<double>(row.mesh->thin_layers->differences.size()), ""};
+}
 
 Value topology_as_image(const Row& row) {
   if (!row.mesh || !row.mesh->topology) return absent("rows have no topology");
@@ -113,6 +144,15 @@ constexpr Measure kOfMesh[] = {
     {"dihedral_proved", "", kMore, kAnswer, dihedral_proved},
     {"radius_edge_proved", "", kMore, kAnswer, radius_edge_proved},
     {"boundary_angles_proved", "", kMore, kAnswer, boundary_angles_proved},
+    {"lines_proved", "", kMore, kAnswer, lines_proved},
+    {"box_proved", "", kMore, kAnswer, box_proved},
+    {"topology_proved", "", kMore, kAnswer, topology_proved},
+    {"lines_share_kept", "", kMore, kFaults, lines_share_kept},
+    {"lines_share_near", "", kMore, kFaults, lines_share_near},
+    {"lines_share_found", "", kMore, kFaults, lines_share_found},
+    {"box_ulps_off", "ulp", kLess, kFaults, box_ulps_off},
+    {"interface_distance_mm", "mm", kLess, kFaults, interface_distance_mm},
+    {"topology_differences", "", kLess, kFaults, topology_differences},
     {"topology_as_image", "", kMore, kAnswer, topology_as_image},
     {"replay_equal", "", kMore, kAnswer, replay_equal},
     {"ended", "", kMore, kOutcome, has_ended},

@@ -177,6 +177,46 @@ struct TopologyRecord {
   }
 };
 
+/// The lines of a mesh made with --lines.
+struct LinesRecord {
+  double traced_mm = 0, kept_mm = 0;
+  double share_kept = 0;  ///< kept_mm over traced_mm
+  JsonPointer as_written;
+  static constexpr auto fields() { return PODM_FIELDS(LinesRecord, traced_mm, kept_mm, share_kept); }
+};
+
+/// A difference of topology that is left in a mesh made with --thin keep.
+struct DifferenceRecord {
+  std::string kind;
+  JsonPointer as_written;
+  static constexpr auto fields() { return PODM_FIELDS(DifferenceRecord, kind); }
+};
+
+struct ThinLayersRecord {
+  std::vector<DifferenceRecord> differences;
+  JsonPointer as_written;
+  static constexpr auto fields() { return PODM_FIELDS(ThinLayersRecord, differences); }
+};
+
+/// One way between the lines of image and mesh: the share that has lines of the other within the bound.
+struct LineWayRecord {
+  double share_near = 0;
+  std::optional<double> furthest_mm;  ///< unset if the other has no line of some labels
+  static constexpr auto fields() { return PODM_FIELDS(LineWayRecord, share_near, furthest_mm); }
+};
+
+/// Distances between the lines of image and mesh. The bound of `share_near` is half of `lines_delta_mm`.
+struct LineDistancesRecord {
+  double lines_delta_mm = 0;
+  std::uint64_t line_edges = 0;
+  double length_mm = 0;  ///< of the mesh's lines
+  LineWayRecord image_to_mesh, mesh_to_image;
+  static constexpr auto fields() {
+    return PODM_FIELDS(LineDistancesRecord, lines_delta_mm, line_edges, length_mm, image_to_mesh,
+                       mesh_to_image);
+  }
+};
+
 /// The inputs of podm-verify beside the mesh and the image: claims, and options with their
 /// bounds.
 struct JudgingRecord {
@@ -213,9 +253,17 @@ struct MeshRecord {
   std::optional<std::array<double, 2>> promised_dihedral_deg;  ///< least and largest angle; unset: none
   ByName<std::uint64_t> guarantees;                            ///< misses of each guarantee
   std::optional<std::string> mesh_sha256;
-  std::optional<ByName<Proof>> verdicts;             ///< one per claim; unset if podm-verify did not run
-  std::optional<DihedralRecord> dihedral_deg;        ///< unset if podm-verify did not report it
-  std::optional<TopologyRecord> topology;            ///< unset if podm-verify had no image
+  std::optional<ByName<Proof>> verdicts;              ///< one per claim; unset if podm-verify did not run
+  std::optional<DihedralRecord> dihedral_deg;         ///< unset if podm-verify did not report it
+  std::optional<TopologyRecord> topology;             ///< unset if podm-verify had no image
+  std::optional<LinesRecord> lines;                   ///< unset without --lines
+  std::optional<ThinLayersRecord> thin_layers;        ///< unset without --thin keep
+  std::optional<LineDistancesRecord> line_distances;  ///< unset if the trial does not ask for them
+  /// Largest distance of a boundary vertex from the plane of its side, in units in the last place of the
+  /// box's largest coordinate. Unset if podm-verify did not judge a flat box.
+  std::optional<double> box_ulps_off;
+  /// Largest distance of the mesh's interfaces from the image's. Unset if podm-verify did not measure it.
+  std::optional<double> interface_distance_mm;
   std::optional<std::vector<std::string>> promises;  ///< promised claims; unset: all
   std::string stop_reason;
   JsonPointer as_written;
@@ -227,8 +275,8 @@ struct MeshRecord {
         PODM_FIELDS(MeshRecord, (ranks), phases_s, cells, vertices, (boundary_facets), (surface_cells),
                     (cells_per_second), refine_cells_per_second, (outcomes), (overhead_s), (hops),
                     (hops_by_kind), (counters), (perturbed), (optimization), (promised_dihedral_deg),
-                    guarantees, (mesh_sha256), (verdicts), (dihedral_deg), (topology), (promises),
-                    stop_reason));
+                    guarantees, (mesh_sha256), (verdicts), (dihedral_deg), (topology), (lines), (thin_layers),
+                    (line_distances), (box_ulps_off), (interface_distance_mm), (promises), stop_reason));
   }
 };
 

@@ -30,7 +30,7 @@ bool same_value(const std::string& key, const Json& one, const Json& other) {
 
 // Checks of a mesh do not change it.
 Json without_checks(Json options) {
-  for (const char* key : {kMesher, kReplay, kFidelity, kSolve}) options.erase(key);
+  for (const char* key : {kMesher, kReplay, kFidelity, kLineDistances, kSolve}) options.erase(key);
   return options;
 }
 

@@ -51,7 +51,8 @@ void check_program(const Row& row, const char* name, const ProgramRecord& progra
 // Names the mesh that a row of one thread, or of virtual time, makes to the bit.
 std::string repeated_part(const Row& row) {
   Json options = asked_of(row);
-  for (const char* key : {kReplay, kFidelity, kSolve, kSchedule, kCounters, kCopies}) options.erase(key);
+  for (const char* key : {kReplay, kFidelity, kLineDistances, kSolve, kSchedule, kCounters, kCopies})
+    options.erase(key);
   return Json({mesher_of(row), row.input.sha256.value_or(""), options, to_json(row.resolved)}).dump();
 }
 

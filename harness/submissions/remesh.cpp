@@ -138,7 +138,7 @@ class Remesher {
     trial.options = with_radius(trial.options, row.resolved);
     trial.options[kReplay] = !row.programs.peer && !trial.options.value("optimize", false);
     trial.options[kFidelity] = passed_fidelity(row);
-    for (const char* key : {kSolve, kCopies, kCounters}) trial.options.erase(key);
+    for (const char* key : {kSolve, kCopies, kCounters, kLineDistances}) trial.options.erase(key);
     if (row.programs.peer)
       for (const char* key : {kReplay, kFidelity}) trial.options.erase(key);
     trial.name = row.trial;

@@ -69,6 +69,7 @@ done
 /// A script for `podm-verify` that runs `body`, where $report is the file of --json.
 inline std::string fake_verifier(const TemporaryFolder& folder, const std::string& body) {
   return folder.script("podm-verify", R"(
+asked=$*
 while [ $# -gt 0 ]; do
   case $1 in --json) report=$2;; esac
   shift

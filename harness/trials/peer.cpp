@@ -75,6 +75,9 @@ Json complete_record(const Trial& trial, const Preparation& preparation, Json re
   record["stop_reason"] = kComplete;
   const double radius_mm = resolved_options(trial, preparation).value("radius_mm", 0.0);
   record["used"]["radius_mm"] = radius_mm;
+  if (const Json delta_mm = resolved_options(trial, preparation).value("delta_mm", Json());
+      !delta_mm.is_null())
+    record["used"]["delta_mm"] = delta_mm;
   record["verify"] = judging_of_peers(radius_mm);
   const Json phases = record.value("phases_s", Json()), cells = record.value("cells", Json());
   const Json seconds = phases.is_object() ? phases.value("refine", Json()) : Json();

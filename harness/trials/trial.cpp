@@ -194,6 +194,9 @@ void TrialRunner::prove(const Run& run, TrialResult& result) {
     result.mesh->verdicts = verification.verdicts;
     result.mesh->dihedral_deg = verification.dihedral_deg;
     result.mesh->topology = verification.topology;
+    result.mesh->line_distances = verification.line_distances;
+    result.mesh->box_ulps_off = verification.box_ulps_off;
+    result.mesh->interface_distance_mm = verification.interface_distance_mm;
     add_fault(verification.fault, verification.is_interrupted, result);
   }
   const auto is_asked_for = [&](const char* key) {

@@ -13,6 +13,8 @@
 namespace podm::bench {
 namespace {
 
+constexpr double kLinesDelta = 1.25;  // podm's sampling distance of lines, times delta
+constexpr const char* kLinesReportName = "/lines.json";
 constexpr int kExitDiffers = 1;  // exit code of podm replay
 
 // The parts of podm-verify's report that are read.
@@ -33,14 +35,27 @@ struct LabelReport {
   std::optional<ImageTopologyReport> image;
   static constexpr auto fields() { return PODM_FIELDS(LabelReport, (components), (euler), (image)); }
 };
-struct DetailsReport {
+// The details of single claims.
+struct SurfaceDetails {
   std::optional<std::vector<LabelReport>> labels;
-  static constexpr auto fields() { return PODM_FIELDS(DetailsReport, (labels)); }
+  static constexpr auto fields() { return PODM_FIELDS(SurfaceDetails, (labels)); }
+};
+struct BoxDetails {
+  double most_ulps_off = 0;
+  static constexpr auto fields() { return PODM_FIELDS(BoxDetails, most_ulps_off); }
+};
+struct DistancesReport {
+  double max_mm = 0;
+  static constexpr auto fields() { return PODM_FIELDS(DistancesReport, max_mm); }
+};
+struct FidelityDetails {
+  DistancesReport mesh_to_image;
+  static constexpr auto fields() { return PODM_FIELDS(FidelityDetails, mesh_to_image); }
 };
 struct ClaimReport {
   Proof verdict = Proof::kNotRun;
   std::optional<std::vector<HistogramReport>> histograms;
-  std::optional<DetailsReport> details;
+  JsonPointer details;
   static constexpr auto fields() { return PODM_FIELDS(ClaimReport, verdict, (histograms), (details)); }
 };
 struct VerifierReport {
@@ -48,13 +63,23 @@ struct VerifierReport {
   static constexpr auto fields() { return PODM_FIELDS(VerifierReport, claims); }
 };
 
-// Returns nothing if it is not a complete report.
-std::optional<VerifierReport> report_of(const Json& json) {
+// Returns nothing if it is not a complete record.
+template <class Record>
+std::optional<Record> whole(const Json& json) {
   try {
-    return from_json<VerifierReport>(json);
+    return from_json<Record>(json);
   } catch (const FieldError&) {
     return {};
   }
+}
+
+std::optional<VerifierReport> report_of(const Json& json) { return whole<VerifierReport>(json); }
+
+// Returns nothing if the claim was not judged.
+template <class Details>
+std::optional<Details> details_of(const VerifierReport& report, const char* claim) {
+  const ClaimReport* const found = report.claims.find(claim);
+  return found != nullptr && found->details ? whole<Details>(*found->details) : std::nullopt;
 }
 
 std::optional<VerifierReport> read_report(const std::string& path) {
@@ -83,10 +108,10 @@ bool is_between(double value, double one, double other) {
 
 // The claim `surface` counts components and Euler numbers of the mesh and, if it has one, of the image.
 std::optional<TopologyRecord> topology_of(const VerifierReport& report) {
-  const ClaimReport* const surface = report.claims.find("surface");
-  if (surface == nullptr || !surface->details || !surface->details->labels) return {};
+  const auto surface = details_of<SurfaceDetails>(report, "surface");
+  if (!surface || !surface->labels) return {};
   TopologyRecord topology;
-  for (const LabelReport& label : *surface->details->labels) {
+  for (const LabelReport& label : *surface->labels) {
     if (!label.components || !label.euler || !label.image) return {};
     const ImageTopologyReport& image = *label.image;
     ++topology.labels;
@@ -101,6 +126,20 @@ std::optional<TopologyRecord> topology_of(const VerifierReport& report) {
 bool asks_fidelity(const Trial& trial) {
   const bool is_of_podm = trial.options.value(kMesher, kPodm) == kPodm;
   return trial.options.value(kFidelity, is_of_podm && trial.tier != Tier::kKickTires);
+}
+
+// Measures lines by a run of its own: a mesh that keeps no lines is judged by other bounds of angles.
+std::optional<LineDistancesRecord> line_distances_of(const std::string& verifier,
+                                                     const std::string& mesh_path, const std::string& image,
+                                                     const MeshRecord& record, const std::string& folder,
+                                                     double timeout_s, const StopQuery& stop_requested) {
+  if (!record.used || !record.used->delta_mm) return {};
+  const std::string report_path = folder + kLinesReportName;
+  ask({verifier, mesh_path, "--image", image, "--claims", "lines", "--lines-delta",
+       fmt::format("{}", kLinesDelta * *record.used->delta_mm), "--json", report_path, "--quiet"},
+      timeout_s, stop_requested);
+  const auto report = read_report(report_path);
+  return report ? details_of<LineDistancesRecord>(*report, "lines") : std::nullopt;
 }
 
 // The claims that the record promises and that are not proved. It promises all unless it names them.
@@ -140,7 +179,8 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, timeout_of_proof_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);
-  Verification verification{{}, {}, {}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
+  Verification verification;
+  verification.is_interrupted = outcome.end == ProcessOutcome::End::kInterrupted;
   if (!report) {
     verification.fault = "not verified: " + outcome.describe();
     return verification;
@@ -148,6 +188,12 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   verification.verdicts = verdicts_of(*report);
   verification.dihedral_deg = dihedral_angles_of(*report);
   verification.topology = topology_of(*report);
+  if (const auto box = details_of<BoxDetails>(*report, "box")) verification.box_ulps_off = box->most_ulps_off;
+  if (const auto fidelity = details_of<FidelityDetails>(*report, "fidelity"))
+    verification.interface_distance_mm = fidelity->mesh_to_image.max_mm;
+  if (trial.options.value(kLineDistances, false))
+    verification.line_distances = line_distances_of(verifier, mesh_path, image, record, folder,
+                                                    timeout_of_proof_s(trial), stop_requested);
   verification.fault = fault_of(verification.verdicts, record);
   return verification;
 }

@@ -16,6 +16,8 @@ struct Verification {
   ByName<Proof> verdicts;  ///< one per claim; empty if the verifier reports nothing
   std::optional<DihedralRecord> dihedral_deg;
   std::optional<TopologyRecord> topology;
+  std::optional<LineDistancesRecord> line_distances;
+  std::optional<double> box_ulps_off, interface_distance_mm;
   std::string fault;  ///< the reason why the mesh is not proved; empty: all promised claims pass
   bool is_interrupted = false;
 };

@@ -1,10 +1,15 @@
 // Analytic phantoms: images for machines without data, at any resolution and of a fixed physical size.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "phantoms/phantom_abdomen.h"
+#include "phantoms/phantom_crystal.h"
+#include "phantoms/phantom_head.h"
 #include "phantoms/phantom_shapes.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
@@ -21,6 +26,7 @@ struct Phantom {
   std::vector<Organ> organs;
   Vector half_extent_mm;          // around the origin; contains every organ
   double relative_z_spacing = 1;  // relative to the spacing along x and y
+  int margin_voxels = kMarginVoxels;
 };
 
 std::vector<Organ> spheres() {
@@ -34,8 +40,47 @@ std::vector<Organ> torus_and_ball() {
   return {{1, "ring", torus(60, 22)}, {2, "ball", ellipsoid({0, 0, 0}, {30, 30, 30})}};
 }
 
+// Three equal spheres, each cut by the planes halfway to the others. All three meet along the z axis.
+std::vector<Organ> bubbles() {
+  constexpr double kRadius = 40, kFromAxis = 26;
+  std::vector<Organ> organs;
+  for (const std::uint32_t i : {0U, 1U, 2U}) {
+    const double angle = 2 * std::numbers::pi * i / 3;
+    const Point center{kFromAxis * std::cos(angle), kFromAxis * std::sin(angle), 0};
+    const Vector reach{kRadius, kRadius, kRadius};
+    const Shape nearest{[=](const Point& p) {
+                          return std::hypot(p.x, p.y) * std::cos(std::numbers::pi / 3) -
+                                 (p.x * std::cos(angle) + p.y * std::sin(angle));
+                        },
+                        center - reach, center + reach};
+    organs.push_back({i + 1, fmt::format("bubble {}", i + 1), within(ellipsoid(center, reach), nearest)});
+  }
+  return organs;
+}
+
+// Shells that are 2, 4 and 6 mm thick: 1, 2 and 3 voxels at size 64.
+std::vector<Organ> shells() {
+  std::vector<Organ> organs;
+  const auto add = [&](std::uint32_t label, const char* name, double radius_mm) {
+    organs.push_back({label, name, ellipsoid({0, 0, 0}, {radius_mm, radius_mm, radius_mm})});
+  };
+  add(1, "thin shell", 60);
+  add(4, "filling", 58);
+  add(2, "middle shell", 48);
+  add(4, "filling", 44);
+  add(3, "thick shell", 34);
+  add(4, "filling", 28);
+  return organs;
+}
+
 Phantom phantom_of(const std::string& name) {
   if (name == "abdomen") return {abdomen_organs(), kAbdomenHalfExtent, 1.25};
+  if (name == "bubbles") return {bubbles(), {66, 66, 40}};
+  if (name == "crystal")
+    return {.organs = crystal_grains(), .half_extent_mm = kCrystalHalfExtent, .margin_voxels = 0};
+  if (name == "head") return {head_organs(), kHeadHalfExtent};
+  if (name == "membrane") return {membrane_organs(), kAbdomenHalfExtent};
+  if (name == "shells") return {shells(), {60, 60, 60}};
   if (name == "spheres") return {spheres(), {98, 60, 60}};
   if (name == "torus") return {torus_and_ball(), {82, 82, 30}};
   std::string known;
@@ -119,7 +164,9 @@ double in_few_bits(double spacing) {
 
 }  // namespace
 
-std::vector<std::string> phantom_names() { return {"abdomen", "spheres", "torus"}; }
+std::vector<std::string> phantom_names() {
+  return {"abdomen", "bubbles", "crystal", "head", "membrane", "shells", "spheres", "torus"};
+}
 
 LabelImage make_phantom(const std::string& name, int size, int threads) {
   const Phantom phantom = phantom_of(name);
@@ -129,14 +176,14 @@ LabelImage make_phantom(const std::string& name, int size, int threads) {
   }
   const std::array<double, 3> half{phantom.half_extent_mm.x, phantom.half_extent_mm.y,
                                    phantom.half_extent_mm.z};
-  const double spacing = 2 * *std::max_element(half.begin(), half.end()) / (size - 2 * kMarginVoxels);
+  const double spacing = 2 * *std::max_element(half.begin(), half.end()) / (size - 2 * phantom.margin_voxels);
   LabelImage image;
   image.spacing = {in_few_bits(spacing), in_few_bits(spacing),
                    in_few_bits(phantom.relative_z_spacing * spacing)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     constexpr double kRoundOff = 1e-9;  // without it the longest axis could get one voxel too many
     const double voxels = std::ceil(2 * half[axis] / image.spacing[axis] - kRoundOff);
-    image.size[axis] = static_cast<int>(voxels) + 2 * kMarginVoxels;
+    image.size[axis] = static_cast<int>(voxels) + 2 * phantom.margin_voxels;
     image.voxel_to_ras[5 * axis] = image.spacing[axis];
     image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * image.spacing[axis];
   }

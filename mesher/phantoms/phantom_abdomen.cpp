@@ -2,6 +2,8 @@
 // navel.
 #include "phantoms/phantom_abdomen.h"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace podm {
@@ -243,6 +245,15 @@ std::vector<Organ> abdomen_organs() {
        tube(smooth({{{32, 10, -16}, 14}, {{8, 14, -2}, 8}, {{-32, 8, 6}, 9}, {{-80, -6, 24}, 6}}))});
   add_vessels(organs);
   add_stomach_and_bowel(organs);
+  return organs;
+}
+
+std::vector<Organ> membrane_organs() {
+  constexpr std::array<std::uint32_t, 4> kLarge{14, 16, 17, 18};  // liver, spleen, kidneys
+  std::vector<Organ> organs{{1, "body", body(0)}};
+  for (Organ& organ : abdomen_organs())
+    if (std::ranges::count(kLarge, organ.label) > 0) organs.push_back(std::move(organ));
+  organs.push_back({19, "membrane", within(ellipsoid({0, 60, -10}, {50, 1000, 35}), coronal_sheet(60, 2.2))});
   return organs;
 }
 

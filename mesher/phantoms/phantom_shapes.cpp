@@ -148,6 +148,12 @@ Shape above(double level) {
           {kEverywhere, kEverywhere, kEverywhere}};
 }
 
+Shape coronal_sheet(double level, double thickness) {
+  return {[=](const Point& p) { return std::abs(p.y - level) - thickness / 2; },
+          {-kEverywhere, level - thickness / 2, -kEverywhere},
+          {kEverywhere, level + thickness / 2, kEverywhere}};
+}
+
 Shape within(const Shape& a, const Shape& b) {
   return {[a = a.value, b = b.value](const Point& p) { return std::max(a(p), b(p)); }, highest(a.low, b.low),
           lowest(a.high, b.high)};

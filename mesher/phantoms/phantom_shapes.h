@@ -61,6 +61,9 @@ Shape in_front_of(double level);
 /// The half space z > `level`.
 Shape above(double level);
 
+/// The sheet |y - `level`| < `thickness` / 2.
+Shape coronal_sheet(double level, double thickness);
+
 Shape within(const Shape& a, const Shape& b);   ///< intersection
 Shape without(const Shape& a, const Shape& b);  ///< difference
 Shape mirrored(const Shape& shape);             ///< at the plane x = 0

@@ -5,7 +5,7 @@ import pandas
 from figures import distributed, distributed_model, experiment_verdicts
 from figures import paper_claims as papers
 from figures import peers as other_meshers
-from figures import scaling
+from figures import scaling, shapes
 from figures import solvers as solving
 from figures.load import RecordError
 from figures.simulated_sizes import speedups
@@ -54,6 +54,26 @@ def slivers(sources, file):
                       "least angle": f"{group['quality.min_dihedral_deg'].min():.2f}",
                       "largest angle": f"{group['quality.max_dihedral_deg'].max():.2f}"})
     return _lines(pandas.DataFrame(lines))
+
+
+def lines(sources, file):
+    """Lines where labels meet, kept and left out, by image and trial."""
+    return _lines(shapes.lines(sources.rows(file)))
+
+
+def boxes(sources, file):
+    """Flat boxes by image and trial."""
+    return _lines(shapes.boxes(sources.rows(file)))
+
+
+def thin_layers(sources, file):
+    """Topologies of meshes that keep thin layers, by image and trial."""
+    return _lines(shapes.thin(sources.rows(file)))
+
+
+def lines_of_peers(sources, file):
+    """Lines of podm and of other meshers, by image."""
+    return _lines(shapes.peers(sources.rows(file)))
 
 
 def costs(sources, folder):
@@ -178,11 +198,12 @@ def paper_claims(sources, *names):
 
 
 TABLES = {table.__name__: table
-          for table in (costs, gate, gate_tries, machines, nodes, paper_claims, peers, peers_in_full, ranks,
-                        sharing, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
+          for table in (boxes, costs, gate, gate_tries, lines, lines_of_peers, machines, nodes, paper_claims, peers,
+                        peers_in_full, ranks, sharing, simulated_speedups, slivers, solvers, solvers_in_full,
+                        thin_layers, verdicts)}
 # Tables with seconds of the machine. Their rows must come from a known machine.
-TIMED = {"costs": Expression("process"), "nodes": Expression("phases_s"), "peers": Expression("phases_s"),
-         "peers_in_full": Expression("phases_s"), "slivers": Expression("phases_s")}
+TIMED = {"costs": Expression("process"), "lines_of_peers": Expression("phases_s"), "nodes": Expression("phases_s"),
+         "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"), "slivers": Expression("phases_s")}
 
 
 def generate(name, arguments, sources, provenance):

@@ -125,6 +125,20 @@ class Adapters(unittest.TestCase):
         self.assertEqual(self.record()["options"]["cgal"], "7.7")
         self.assertIn("12.0 24.0 36.0 0", (self.output / "mesh.mesh").read_text(), "in the image's frame")
 
+    def test_lines_are_asked_of_a_cgal_that_detects_them(self):
+        self.program("cgal6_mesh3", CGAL)
+        done = self.mesh("cgal6", "--radius", "2", "--delta", "1", "--lines")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        switches = self.record()["options"]["switches"]
+        self.assertEqual(switches[switches.index("--lines"):][:3], ["--lines", "--edge-size", "1.25"])
+
+    def test_meshers_without_lines_refuse_them(self):
+        self.program("cgal_mesh3", CGAL.replace("7.7", "5.5.1"))
+        for name, why in (("cgal", "before 5.6"), ("podm_volume", "keeps no lines")):
+            done = self.ask(name, "--image", self.folder / "image.inr", "--output", self.output, "--lines")
+            self.assertEqual(done.returncode, 77, done.stderr)
+            self.assertIn(why, done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -104,6 +104,36 @@ TEST_F(TrialTest, TopologyIsTheVerifiersCountBesideTheImages) {
   EXPECT_FALSE(topology_of(same + "," + no_image)) << "nothing to compare with";
 }
 
+TEST_F(TrialTest, DistancesAreThoseOfTheClaimsThatMeasureThem) {
+  const std::string report =
+      R"({"claims":{"box":{"verdict":"pass","details":{"most_ulps_off":1.25}},)"
+      R"("fidelity":{"verdict":"fail","details":{"mesh_to_image":{"max_mm":0.5,"p95_mm":0.1},"labels":[]}},)"
+      R"("lines":{"verdict":"fail","details":{"lines_delta_mm":2.5,"line_edges":7,"length_mm":12.5,"space":"RAS",)"
+      R"("image_to_mesh":{"share_near":0.75,"furthest_mm":null,"far_places":3},)"
+      R"("mesh_to_image":{"share_near":1.0,"furthest_mm":0.5,"far_places":0}}}}})";
+  const std::string mesher = fake_mesher(
+      folder_, write_record(R"({"schema":1,"phases_s":{"refine":1},"cells":9,"vertices":6,)"
+                            R"("refine_cells_per_second":9,"guarantees":{},"used":{"delta_mm":2},)"
+                            R"("stop_reason":"complete"})"));
+  const std::string verifier = fake_verifier(
+      folder_, "echo '" + report + "' > \"$report\"; echo \"$asked\" >> " + folder_.path() + "/asked");
+  Trial trial = some_trial();
+  const auto run = [&] {
+    return TrialRunner({mesher, verifier}).run(trial, prepared(trial), folder_.path()).mesh.value();
+  };
+  const MeshRecord alone = run();
+  EXPECT_EQ(alone.box_ulps_off, 1.25);
+  EXPECT_EQ(alone.interface_distance_mm, 0.5);
+  EXPECT_FALSE(alone.line_distances) << "they were not asked for";
+  trial.options[kLineDistances] = true;
+  const MeshRecord asked = run();
+  ASSERT_TRUE(asked.line_distances);
+  EXPECT_EQ(asked.line_distances->line_edges, 7u);
+  EXPECT_EQ(asked.line_distances->image_to_mesh.share_near, 0.75);
+  EXPECT_FALSE(asked.line_distances->image_to_mesh.furthest_mm) << "a line has no counterpart";
+  EXPECT_NE(read_tail(folder_ / "asked", 1000).find("--claims lines --lines-delta 2.5"), std::string::npos);
+}
+
 // A record with the claims and options by which podm-verify judges its mesh.
 const std::string kJudged =
     R"("verify":{"claims":["structure","delaunay","size"],"options":["--delta","0.75","--size-near","1,0=2:3"]},)";

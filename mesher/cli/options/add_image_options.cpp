@@ -15,7 +15,7 @@ constexpr int kMaxPhantomSize = 4096;
 void add_image_argument(CLI::App& app, ImageArguments& image) {
   require(add_one(app, "IMAGE", "",
                   fmt::format("NIfTI, NRRD, MetaImage or INR label image of fewer than 2^31 voxels,\n"
-                              "or phantom:NAME[@SIZE], NAME one of {}",
+                              "or phantom:NAME[@SIZE], NAME one of\n{}",
                               fmt::join(phantom_names(), ", ")),
                   into(image.path)));
 }

@@ -105,7 +105,7 @@ LabelImage image_of_array(const VoxelArray& array, std::array<double, 12> voxel_
                           const std::string& name, const LabelSelection& selection = {}, int threads = 0,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Makes an analytic phantom ("abdomen", "spheres" or "torus") with `size` voxels along the longest axis.
+/// Makes an analytic phantom (one of phantom_names()) with `size` voxels along the longest axis.
 LabelImage make_phantom(const std::string& name, int size, int threads = 0);
 std::vector<std::string> phantom_names();
 

@@ -1,0 +1,1 @@
+"""Angle errors of a mesh's facets along lines where three labels meet."""

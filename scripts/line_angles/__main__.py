@@ -1,0 +1,73 @@
+"""Meshes phantom:bubbles with lines and without. Prints a JSON line per mesh on standard output: mean, root mean square
+and 95th percentile of the angle between a facet's normal and that of the shape, weighted by area, for facets at lines
+and for all others; and the ratio of the means with lines over without."""
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy
+
+from views.read_mesh import read_mesh
+
+from .bubbles import normals
+from .facets import are_at_lines, areas_and_normals, errors_deg, interface_facets
+
+
+def spread(errors, weights):
+    """Returns the weighted mean, root mean square and 95th percentile."""
+    order = numpy.argsort(errors)
+    shares = numpy.cumsum(weights[order]) / weights.sum()
+    return {"facets": len(errors), "mean_deg": float(numpy.average(errors, weights=weights)),
+            "rms_deg": float(numpy.sqrt(numpy.average(errors**2, weights=weights))),
+            "p95_deg": float(errors[order][numpy.searchsorted(shares, 0.95)])}
+
+
+def errors_of(mesh):
+    """Returns the spread of errors of the mesh's facets at lines, and away from them."""
+    facets, sides = interface_facets(mesh.cells, mesh.labels)
+    areas, found = areas_and_normals(mesh.points, facets)
+    errors = errors_deg(found, normals(mesh.points[facets].mean(axis=1), sides))
+    at_lines = are_at_lines(facets, sides)
+    return {"at_lines": spread(errors[at_lines], areas[at_lines]), "away": spread(errors[~at_lines], areas[~at_lines])}
+
+
+def measure(program, size, options):
+    """Returns the row of one mesh."""
+    with tempfile.TemporaryDirectory() as folder:
+        mesh, record = Path(folder) / "mesh.vtu", Path(folder) / "record.jsonl"
+        command = [program, "mesh", f"phantom:bubbles@{size}", *options, "-o", mesh, "--record", record, "--quiet"]
+        subprocess.run(command, check=True)
+        made = json.loads(record.read_text())
+        return {"size": size, "options": options, "radius_mm": made["used"]["radius_mm"],
+                "delta_mm": made["used"]["delta_mm"], "cells": made["cells"], "mesh_sha256": made["mesh_sha256"],
+                **errors_of(read_mesh(mesh))}
+
+
+def spacing_mm(program, size):
+    command = [program, "info", f"phantom:bubbles@{size}", "--json"]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["spacing_mm"][0]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--podm", default="build/bin/podm", help="default build/bin/podm")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[48, 64, 96], help="voxels along x; default 48 64 96")
+    parser.add_argument("--smooth", type=float, default=1.5, help="--smooth of podm, voxels; default 1.5; 0: none")
+    parser.add_argument("--delta", type=float, default=1, help="--delta of podm, voxels; default 1")
+    arguments = parser.parse_args()
+    for size in arguments.sizes:
+        voxel = spacing_mm(arguments.podm, size)
+        options = ["--delta", f"{arguments.delta * voxel:.6g}", "--radius", f"{3 * voxel:.6g}", "--threads", "1"]
+        options += ["--smooth", f"{arguments.smooth * voxel:.6g}"] if arguments.smooth else []
+        without, with_lines = (measure(arguments.podm, size, more) for more in (options, [*options, "--lines"]))
+        ratio = with_lines["at_lines"]["mean_deg"] / without["at_lines"]["mean_deg"]
+        for row in without, {**with_lines, "ratio_of_means": ratio}:
+            print(json.dumps({"smooth_voxels": arguments.smooth, **row}), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
