@@ -9,10 +9,12 @@ from .errors import DocsError
 FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters",
          "outcomes", "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization",
          "smoothing", "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input",
-         "image", "leaves", "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
-# Such values in files that hold no rows of trials: random runs, plans beside runs.
+         "image", "leaves", "threads", "cores", "mesh_bytes", "algorithm", "mesher", "lines", "line_distances",
+         "thin_layers", "facets_of_sides", "box_ulps_off", "interface_distance_mm", "topology"}
+# Such values in files that hold no rows of trials: random runs, plans beside runs, angles.
 FACTS_ELSEWHERE = {"cells", "planned_cells", "components", "lost", "cut", "missed", "lost_not_said_whole",
-                   "cut_by_details", "runs", "counts", "failed_seeds", "first_seed", "last_seed"}
+                   "cut_by_details", "at_lines", "away", "ratio_of_means", "runs", "counts", "failed_seeds",
+                   "first_seed", "last_seed"}
 FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|threads|asked_cells|cells_per_rank|rounds|deferred_share|imbalance"
                             r"|cells_over_one_machine|store_cells_per_cell|learnt_per_vertex)\b"
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")

@@ -71,6 +71,11 @@ def thin_layers(sources, file):
     return _lines(shapes.thin(sources.rows(file)))
 
 
+def line_angles(sources, file):
+    """Mean angle errors of facets at lines, without lines as edges of the mesh and with them."""
+    return _lines(shapes.angles(sources.rows(file)))
+
+
 def lines_of_peers(sources, file):
     """Lines of podm and of other meshers, by image."""
     return _lines(shapes.peers(sources.rows(file)))
@@ -198,9 +203,9 @@ def paper_claims(sources, *names):
 
 
 TABLES = {table.__name__: table
-          for table in (boxes, costs, gate, gate_tries, lines, lines_of_peers, machines, nodes, paper_claims, peers,
-                        peers_in_full, ranks, sharing, simulated_speedups, slivers, solvers, solvers_in_full,
-                        thin_layers, verdicts)}
+          for table in (boxes, costs, gate, gate_tries, line_angles, lines, lines_of_peers, machines, nodes,
+                        paper_claims, peers, peers_in_full, ranks, sharing, simulated_speedups, slivers, solvers,
+                        solvers_in_full, thin_layers, verdicts)}
 # Tables with seconds of the machine. Their rows must come from a known machine.
 TIMED = {"costs": Expression("process"), "lines_of_peers": Expression("phases_s"), "nodes": Expression("phases_s"),
          "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"), "slivers": Expression("phases_s")}

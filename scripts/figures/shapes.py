@@ -12,7 +12,7 @@ def _of_trials(rows, has_option):
     found = [row for row in rows if has_option(row["asked"]) and not row["warmup"]]
     if not found:
         raise RecordError("no rows of such trials")
-    return found
+    return sorted(found, key=lambda row: (row["input"]["name"], row["trial"], row["repeat"]))
 
 
 def _without(rows, row, options):
@@ -26,6 +26,20 @@ def _without(rows, row, options):
 
 def _ratio(row, base, key="cells"):
     return f"{row[key] / base[key]:.3f}" if base and row.get(key) and base.get(key) else ""
+
+
+def angles(rows):
+    """Mean angle errors of facets at lines of phantom:bubbles, without lines and with them."""
+    table = []
+    for without, with_lines in zip(rows[::2], rows[1::2]):
+        table.append({"size": with_lines["size"], "smoothing, voxels": with_lines["smooth_voxels"],
+                      "delta, voxels": with_lines["delta_voxels"], "cells": with_lines["cells"],
+                      **{f"{title}, degrees": f"{of[place]['mean_deg']:.2f}"
+                         for title, of, place in (("at lines, without", without, "at_lines"),
+                                                  ("at lines, with", with_lines, "at_lines"),
+                                                  ("elsewhere", with_lines, "away"))},
+                      "with over without": f"{with_lines['ratio_of_means']:.3f}"})
+    return pandas.DataFrame(table)
 
 
 def _percent(share):

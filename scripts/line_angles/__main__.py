@@ -1,7 +1,8 @@
-"""Meshes phantom:bubbles with lines and without. Prints a JSON line per mesh on standard output: mean, root mean square
-and 95th percentile of the angle between a facet's normal and that of the shape, weighted by area, for facets at lines
-and for all others; and the ratio of the means with lines over without."""
+"""Meshes phantom:bubbles with lines and without. Prints a JSON array on standard output, with an object per mesh: mean,
+root mean square and 95th percentile of the angle between a facet's normal and that of the shape, weighted by area, for
+facets at lines and for all others; and the ratio of the means with lines over without."""
 import argparse
+import itertools
 import json
 import subprocess
 import sys
@@ -51,21 +52,29 @@ def spacing_mm(program, size):
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["spacing_mm"][0]
 
 
+def with_lines_and_without(program, size, smooth_voxels, delta_voxels):
+    voxel = spacing_mm(program, size)
+    options = ["--delta", f"{delta_voxels * voxel:.6g}", "--radius", f"{3 * voxel:.6g}", "--threads", "1"]
+    options += ["--smooth", f"{smooth_voxels * voxel:.6g}"] if smooth_voxels else []
+    without, with_lines = (measure(program, size, more) for more in (options, [*options, "--lines"]))
+    ratio = with_lines["at_lines"]["mean_deg"] / without["at_lines"]["mean_deg"]
+    settings = {"smooth_voxels": smooth_voxels, "delta_voxels": delta_voxels}
+    return {**settings, "lines": False, **without}, {**settings, "lines": True, **with_lines, "ratio_of_means": ratio}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--podm", default="build/bin/podm", help="default build/bin/podm")
     parser.add_argument("--sizes", type=int, nargs="+", default=[48, 64, 96], help="voxels along x; default 48 64 96")
-    parser.add_argument("--smooth", type=float, default=1.5, help="--smooth of podm, voxels; default 1.5; 0: none")
-    parser.add_argument("--delta", type=float, default=1, help="--delta of podm, voxels; default 1")
+    parser.add_argument("--smooth", type=float, nargs="+", default=[0, 1.5],
+                        help="--smooth of podm, voxels; 0: none; default 0 1.5")
+    parser.add_argument("--delta", type=float, nargs="+", default=[1, 2], help="--delta of podm, voxels; default 1 2")
     arguments = parser.parse_args()
-    for size in arguments.sizes:
-        voxel = spacing_mm(arguments.podm, size)
-        options = ["--delta", f"{arguments.delta * voxel:.6g}", "--radius", f"{3 * voxel:.6g}", "--threads", "1"]
-        options += ["--smooth", f"{arguments.smooth * voxel:.6g}"] if arguments.smooth else []
-        without, with_lines = (measure(arguments.podm, size, more) for more in (options, [*options, "--lines"]))
-        ratio = with_lines["at_lines"]["mean_deg"] / without["at_lines"]["mean_deg"]
-        for row in without, {**with_lines, "ratio_of_means": ratio}:
-            print(json.dumps({"smooth_voxels": arguments.smooth, **row}), flush=True)
+    version = subprocess.run([arguments.podm, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    rows = [{"program": version.splitlines(), **row}
+            for settings in itertools.product(arguments.sizes, arguments.smooth, arguments.delta)
+            for row in with_lines_and_without(arguments.podm, *settings)]
+    print("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]")
     return 0
 
 
