@@ -131,6 +131,7 @@ class Adapters(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         switches = self.record()["options"]["switches"]
         self.assertEqual(switches[switches.index("--lines"):][:3], ["--lines", "--edge-size", "1.25"])
+        self.assertEqual(self.record()["promises"], ["structure", "conformity"])
 
     def test_meshers_without_lines_refuse_them(self):
         self.program("cgal_mesh3", CGAL.replace("7.7", "5.5.1"))
