@@ -10,7 +10,8 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
     : problem_(problem), team_(team), stop_(stop) {
   timed(kAllocate, [&] {
     const int num_nodes = team.machine != nullptr ? team.machine->num_nodes() : 1;
-    result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes);
+    result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes,
+                                          problem.shared_cells);
     if (team.log != nullptr)
       order_ =
           std::make_unique<CommitOrder>(*result_.mesh, *team.log, static_cast<std::size_t>(num_workers()));

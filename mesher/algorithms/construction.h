@@ -35,7 +35,8 @@ struct Problem {
   Box object;  // bounds of the foreground
   double delta_mm = 0;
   SizeField sizes;
-  std::size_t cell_capacity = 0;  // the most cells that the store may hold
+  std::size_t cell_capacity = 0;      // the most cells that the store may hold
+  SharedIds* shared_cells = nullptr;  // from which it takes them; null: it has them alone
   // Bytes that store, workers and leaves may take together. The capacity accounts for workers, not for
   // leaves.
   std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();

@@ -9,8 +9,10 @@
 #include <iterator>
 #include <mutex>
 #include <new>
+#include <utility>
 #include <vector>
 
+#include "delaunay/shared_ids.h"
 #include "runtime/access_tally.h"
 
 namespace podm {
@@ -18,14 +20,20 @@ namespace podm {
 class IdArena {
  public:
   /// Manages the ids below `capacity`. A run has 2^run_bits ids. Blocks are taken from runs; none is larger
-  /// than a run.
-  IdArena(std::size_t capacity, int num_nodes, unsigned run_bits)
+  /// than a run. If there are shared ids, the arena takes its own from them and returns them in the end.
+  IdArena(std::size_t capacity, int num_nodes, unsigned run_bits, SharedIds* shared = nullptr)
       : num_ids_(capacity),
         capacity_(capacity),
         run_bits_(run_bits),
+        shared_(shared),
         nodes_(static_cast<std::size_t>(num_nodes)) {
     if (num_nodes > 1) node_of_run_.resize((capacity >> run_bits) + 1);
   }
+  ~IdArena() {
+    if (shared_ != nullptr) shared_->add(bound() + num_kept_back_);
+  }
+  IdArena(const IdArena&) = delete;
+  IdArena& operator=(const IdArena&) = delete;
 
   /// Returns the number of ids that each of `num_workers` workers should take at once. Unused ids in blocks
   /// are then at most 1/32 of all, unless the minimum block size applies.
@@ -49,6 +57,7 @@ class IdArena {
   bool reduce_capacity(std::size_t count) {
     const std::scoped_lock lock(mutex_);
     capacity_ = num_ids_ - std::min(num_ids_, count);
+    if (shared_ != nullptr && !keep_back(num_ids_ - capacity_)) capacity_ = 0;
     return bound() <= capacity_;
   }
   /// True if more ids were requested than there were.
@@ -80,6 +89,12 @@ class IdArena {
     std::uint32_t next = 0, end = 0;
     std::vector<std::uint32_t> returned{};
   };
+  bool keep_back(std::size_t count) {
+    shared_->add(std::exchange(num_kept_back_, 0));
+    if (!shared_->take(count)) return false;
+    num_kept_back_ = count;
+    return true;
+  }
   void start_run(std::uint32_t count, NodeIndex node) {
     const std::uint32_t first = bound();
     const std::uint32_t size = node_of_run_.empty() ? count : 1u << run_bits_;
@@ -87,6 +102,7 @@ class IdArena {
       is_exhausted_.store(true, std::memory_order_relaxed);
       throw std::bad_alloc();
     }
+    if (shared_ != nullptr && !shared_->take(size)) throw std::bad_alloc();
     if (!node_of_run_.empty()) node_of_run_[first >> run_bits_] = node;
     bound_.store(first + size, std::memory_order_relaxed);
     nodes_[node].next = first;
@@ -95,6 +111,8 @@ class IdArena {
 
   std::size_t num_ids_, capacity_;  // the ids between them may not be taken
   unsigned run_bits_;
+  SharedIds* const shared_;        // null: the arena has its ids alone
+  std::size_t num_kept_back_ = 0;  // shared ids that may not be taken
   std::mutex mutex_;
   std::vector<OfNode> nodes_;
   std::vector<NodeIndex> node_of_run_;  // empty on one node

@@ -32,12 +32,13 @@ double largest_coordinate(const Box& b) {
 
 }  // namespace
 
-Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
+Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes, SharedIds* shared_cells)
     : box_(box),
       extent_(largest_coordinate(box)),
       cells_(cell_capacity),
       vertices_(vertex_capacity_for(cell_capacity)),
-      cell_ids_(cells_.capacity(), num_nodes, run_bits_for(cell_capacity, num_nodes, kCellRunBits)),
+      cell_ids_(cells_.capacity(), num_nodes, run_bits_for(cell_capacity, num_nodes, kCellRunBits),
+                shared_cells),
       vertex_ids_(vertices_.capacity(), num_nodes,
                   run_bits_for(vertices_.capacity(), num_nodes, kVertexRunBits)) {
   // Kuhn's six cells around the diagonal from corner 0 to corner 7 (bit 0: x, 1: y, 2: z). All eight corners

@@ -126,8 +126,9 @@ static_assert(sizeof(Cell) == 64);
 class Mesh {
  public:
   /// Makes the six cells of the virtual box, all vertices kBox. The capacity bounds the ids that pools may
-  /// take. `num_nodes` is the number of NUMA nodes that the pools are on.
-  Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
+  /// take. `num_nodes` is the number of NUMA nodes that the pools are on. Stores that share cells, if any,
+  /// take their ids of cells from them.
+  Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1, SharedIds* shared_cells = nullptr);
 
   // Builds that check the lock protocol do so in these functions: step.h, lock_contract.h.
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }

@@ -139,11 +139,11 @@ MeshingOptions with_algorithm(MeshingOptions options) {
 class RunOnRank {
  public:
   RunOnRank(const LabelImage& image, const MeshingOptions& options, Communication& ranks,
-            const ProgressCallback& progress, EndOnAllRanks& end, SharedIsosurface* isosurface)
+            const ProgressCallback& progress, EndOnAllRanks& end, SharedInProcess* shared)
       : image_(image),
         options_(with_algorithm(options)),
         ranks_(ranks),
-        isosurface_(isosurface),
+        shared_(ranks.size() > 1 ? shared : nullptr),
         end_(end),
         progress_([&end, progress](const Progress& now) {
           end.hear();
@@ -213,28 +213,48 @@ class RunOnRank {
     return predicted > num_ranks ? predicted : 2 * num_ranks;
   }
 
+  // More ranks in this process would share the same memory.
+  std::string memory_that_would_do(std::uint64_t num_ranks, std::uint64_t bytes) const {
+    if (shared_ == nullptr) return fmt::format("{} or more ranks of this memory would do", num_ranks);
+    return fmt::format("{:.3g} GiB for the stores of all ranks would do",
+                       static_cast<double>(num_ranks * bytes) / kBytesPerGib);
+  }
+
   OutOfMemory lack_of_memory() const {
     const std::uint64_t bytes = bytes_for_part(), num_ranks = num_ranks_that_would_do(bytes);
     const double gib = static_cast<double>(bytes) / kBytesPerGib,
                  more = static_cast<double>(num_ranks) / ranks_.size();
-    return OutOfMemory(
-        fmt::format("out of memory: its part of the mesh, about {:.2g} cells, needs about {:.3g} GiB and has "
-                    "{:.3g}; {} or more ranks of this memory would do",
-                    phases_.expected_cells() / ranks_.size(), gib * more, gib, num_ranks));
+    return OutOfMemory(fmt::format(
+        "out of memory: its part of the mesh, about {:.2g} cells, needs about {:.3g} GiB and has "
+        "{:.3g}; {}",
+        phases_.expected_cells() / ranks_.size(), gib * more, gib, memory_that_would_do(num_ranks, bytes)));
   }
 
   void warn_of_memory(MeshingReport& report) {
-    std::array<std::uint64_t, 1> num_ranks{num_ranks_that_would_do(bytes_for_part())};
+    const std::uint64_t bytes = bytes_for_part();
+    std::array<std::uint64_t, 1> num_ranks{num_ranks_that_would_do(bytes)};
     ranks_.maximum(num_ranks);
-    report.warnings.push_back(
-        fmt::format("memory ended the run; {} or more ranks of this memory would do", num_ranks[0]));
+    report.warnings.push_back("memory ended the run; " + memory_that_would_do(num_ranks[0], bytes));
   }
 
   std::shared_ptr<const Isosurface> isosurface(std::shared_ptr<const VoxelWeights> weights) {
     const auto make = [&] {
       return std::make_shared<const Isosurface>(image_, phases_.loop_threads(), std::move(weights));
     };
-    return isosurface_ != nullptr ? isosurface_->get(make, ranks_) : make();
+    return shared_ != nullptr ? shared_->isosurface.get(make, ranks_) : make();
+  }
+
+  // Collective in its first call, so that no rank takes cells before all have added theirs.
+  Problem with_shared_cells(Problem problem) {
+    if (shared_ == nullptr) return problem;
+    if (!has_added_cells_) {
+      shared_->cells.add(problem.cell_capacity);
+      has_added_cells_ = true;
+      ranks_.barrier();
+    }
+    problem.cell_capacity = std::min(kMostShares * problem.cell_capacity, problem.most_numbered_cells);
+    problem.shared_cells = &shared_->cells;
+    return problem;
   }
 
   void refine(MeshingReport& own) {
@@ -278,8 +298,9 @@ class RunOnRank {
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       spending_.end(options_.sizes.target_elements > 0 ? "calibrate" : "transform");
       if (ranks_.size() == 1 && !checkpoints_) return refine_alone(problem, team, stop);
+      const Problem own_problem = with_shared_cells(problem);
       const double start_s = ranks_.seconds();
-      refined_.emplace(podm_distributed(problem, team,
+      refined_.emplace(podm_distributed(own_problem, team,
                                         {.initial_ratio = options_.leaves.initial_ratio,
                                          .cut_seed = options_.cut_seed,
                                          .algorithm = options_.algorithm,
@@ -338,11 +359,12 @@ class RunOnRank {
   const LabelImage& image_;
   const MeshingOptions options_;
   Communication& ranks_;
-  SharedIsosurface* const isosurface_;
+  SharedInProcess* const shared_;  // null: this rank shares nothing
   EndOnAllRanks& end_;
   const ProgressCallback progress_;
   PhasesOfRun phases_;
   Spending spending_{ranks_};
+  bool has_added_cells_ = false;
   std::optional<Checkpoints> checkpoints_;
   std::optional<DistributedRefinement> refined_;
 };
@@ -351,7 +373,7 @@ class RunOnRank {
 
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress,
-                                   std::stop_token stop, SharedIsosurface* isosurface,
+                                   std::stop_token stop, SharedInProcess* shared,
                                    const CheckpointOptions& checkpoints) {
   EndOnAllRanks end(ranks, std::move(stop));
   std::optional<RunOnRank> run;
@@ -361,7 +383,7 @@ MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions
                                     : check_options(image, options);
         check_options_on_ranks(options);
         check_checkpoints(checkpoints, options, ranks.size());
-        run.emplace(image, options, ranks, progress, end, isosurface);
+        run.emplace(image, options, ranks, progress, end, shared);
       },
       ranks);
   if (ranks.size() > 1) expect_agreement(facts_of(image, options), ranks);

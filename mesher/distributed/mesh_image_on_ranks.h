@@ -49,7 +49,14 @@ struct MeshingOnRanks {
   std::optional<ResumedFrom> resumed;
 };
 
-using SharedIsosurface = SharedValue<Isosurface>;
+/// A rank of a process may hold up to this many times as many cells as fit in its own part of the memory.
+inline constexpr std::size_t kMostShares = 8;
+
+/// The objects that the ranks of one process share.
+struct SharedInProcess {
+  SharedValue<Isosurface> isosurface;
+  SharedIds cells;  ///< of all stores; mesh_image_on_ranks() adds those that fit in each rank's memory
+};
 
 /// Throws InputError on options that ranks do not support: kPodmHome, schedules, optimisation, and virtual
 /// workers unless the calling thread has virtual threads (runtime/virtual_threads.h).
@@ -62,12 +69,13 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// (distributed/collective_errors.h) if images or options differ between ranks, or if options are bad or not
 /// supported on ranks. If memory runs out between rounds, that rank throws OutOfMemory
 /// (distributed/rank_failure.h), which names a number of ranks that would do, and the caller must end the
-/// other ranks. Ranks of one process may share the isosurface if they have the same image; otherwise each
-/// rank makes its own. Checkpoints need two ranks or more, and a radius; one rank may resume those of more.
-/// Throws RefusedByAll on faults of their files.
+/// other ranks. Ranks of one process that have the same image may share objects. A rank then holds more cells
+/// than fit in its own memory if others leave theirs unused, up to kMostShares times as many. Checkpoints
+/// need two ranks or more, and a radius; one rank may resume those of more. Throws RefusedByAll on faults of
+/// their files.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
-                                   std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr,
+                                   std::stop_token stop = {}, SharedInProcess* shared = nullptr,
                                    const CheckpointOptions& checkpoints = {});
 
 }  // namespace podm

@@ -21,6 +21,8 @@ import sys
 import tempfile
 import time
 
+from mpi_environment import mpi_environment
+
 PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"]
 MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
 VERIFIER, VERIFIER_ON_RANKS = (os.path.join(os.path.dirname(PROGRAM), name)
@@ -31,8 +33,6 @@ CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "co
 PHANTOMS = [("spheres", 48), ("torus", 48), ("abdomen", 96)]
 IMAGE_SUFFIXES = (".nrrd", ".nii", ".nii.gz", ".mha", ".inr", ".inr.gz")
 IN_PROCESS_RANKS, MPI_RANKS = (2, 3, 5, 8), (2, 4)
-ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 TIMEOUT_S = 3600
 
 
@@ -41,8 +41,9 @@ class Failed(Exception):
 
 
 def call(command, accepted=(0,)):
-    process = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=TIMEOUT_S,
-                             env=ENVIRONMENT, check=False)
+    with mpi_environment() as environment:
+        process = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=TIMEOUT_S,
+                                 env=environment, check=False)
     if process.returncode not in accepted:
         raise Failed(f"exit {process.returncode} of {shlex.join(map(str, command))}\n"
                      f"{(process.stdout + process.stderr).strip()[-3000:]}")
@@ -156,7 +157,8 @@ def begin(run, folder):
     if run.cut.limit:
         call(command, accepted=(0, 1))
         return
-    with subprocess.Popen([str(word) for word in command], env=ENVIRONMENT, stdout=subprocess.DEVNULL) as process:
+    with mpi_environment() as environment, \
+            subprocess.Popen([str(word) for word in command], env=environment, stdout=subprocess.DEVNULL) as process:
         while process.poll() is None and not (folder / "saved" / "checkpoint.txt").exists():
             time.sleep(0.01)
         time.sleep(run.cut.kill_s)
@@ -216,7 +218,11 @@ def run_random(options):
             samples.append(Sample.of(path, options.cells))
         seeds = range(options.first, options.first + options.runs)
         runs = [drawn(seed, samples) for seed in seeds]
-        made = list(pool.map(carry_out, runs))
+        made = []
+        for one in pool.map(carry_out, runs):
+            made.append(one)
+            if len(made) % 100 == 0:
+                print(f"{len(made)} of {len(runs)} runs, {made.count(None)} failed", file=sys.stderr, flush=True)
     print(f"seeds {seeds.start} to {seeds.stop - 1} of about {options.cells} cells: {len(made)} runs, "
           f"{sum(run.cut is not None for run in runs)} of them cut and resumed, {made.count(None)} failed", end="")
     good = [one for one, run in zip(made, runs) if one is not None and run.cut is None]

@@ -12,6 +12,7 @@ import subprocess
 import time
 import unittest
 
+from mpi_environment import mpi_environment
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 from slow import few, slow
 from small_images import INT8, ball_voxels, nifti_bytes, voxels_of, write_metaimage, write_nifti, write_nrrd
@@ -21,11 +22,13 @@ VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@32"
 ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # takes tens of seconds and about a GiB
 LONGER = ["phantom:abdomen@64", "--radius", 1.5]  # goes on for seconds after a rank ends, also on a busy machine
-# Open MPI needs these for more ranks than processors, and as root; other implementations do not.
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+ENVIRONMENT = {}  # of MPI programs
 # Limits the size of files. MPICH must then not keep messages in files of shared memory.
 FULL_DISK = "ulimit -f 16; export UCX_TLS=self,tcp"
+
+
+def setUpModule():
+    ENVIRONMENT.update(unittest.enterModuleContext(mpi_environment()))
 
 
 def on_ranks(*ranks):

@@ -33,7 +33,7 @@ from serve_page.workspace import Workspace  # noqa: E402
 
 VTK = pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")
 SECONDS_UNSEEN = 8  # of serve_page/server.py, and some more
-BALL, COARSE, LONG = settings(radius=4), settings(radius=30), settings(radius=1.5)
+BALL, COARSE, LONG = settings(radius=4), settings(radius=30), settings(radius=0.8)  # a LONG run takes many seconds
 
 
 def setUpModule():

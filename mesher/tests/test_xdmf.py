@@ -1,13 +1,13 @@
 """An XDMF mesh in a solver: DOLFINx reads it in parallel and solves a Poisson equation on it."""
 
 import json
-import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import unittest
 
+from mpi_environment import mpi_environment
 from podm_process import PodmTestCase, run_podm
 
 SOLVER = pathlib.Path(__file__).with_name("solve_poisson.py")
@@ -44,11 +44,10 @@ class XdmfTest(PodmTestCase):
 
     def solve(self, path, num_ranks):
         result = self.folder / "result.json"
-        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                       "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
-        process = subprocess.run(["mpirun", "--oversubscribe", "-n", str(num_ranks), sys.executable, "-B", SOLVER, path,
-                                  OUTSIDE_TAGS, result], capture_output=True, text=True, timeout=240,
-                                 env=environment, check=False)
+        with mpi_environment() as environment:
+            process = subprocess.run(["mpirun", "-n", str(num_ranks), sys.executable, "-B", SOLVER, path, OUTSIDE_TAGS,
+                                      result], capture_output=True, text=True, timeout=240,
+                                     env=environment | {"OMP_NUM_THREADS": "1"}, check=False)
         self.assert_exit(process, 0)
         return json.loads(result.read_text())
 

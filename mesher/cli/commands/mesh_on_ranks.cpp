@@ -200,8 +200,7 @@ class Run {
       display.show(now);
     };
     const CheckpointArguments& checkpoints = command_.checkpoints;
-    return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(),
-                               &shared_.isosurface,
+    return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(), &shared_.meshing,
                                {.folder = checkpoints.folder,
                                 .seconds = checkpoints.least_seconds,
                                 .is_resumed = checkpoints.resume});

@@ -15,7 +15,7 @@ namespace podm::cli {
 /// The objects that the ranks of a process share.
 struct SharedByRanks {
   SharedValue<LabelImage> image;
-  SharedIsosurface isosurface;
+  SharedInProcess meshing;
 };
 
 /// Runs one rank's part. Collective. Returns the exit code, the same on all ranks: 0, or 1 if the run misses

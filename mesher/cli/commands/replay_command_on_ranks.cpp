@@ -50,7 +50,8 @@ int replay_on_ranks(const ReplayCommand& command, Communication& ranks, SharedBy
     space = parse_choice<Space>(log.head.space, command.log_paths.front());
   };
   do_collectively(read, ranks);
-  const ReplayOnRanks replayed = podm::replay_on_ranks(*image, log, space, 1, ranks, shared.isosurface);
+  const ReplayOnRanks replayed =
+      podm::replay_on_ranks(*image, log, space, 1, ranks, shared.meshing.isosurface);
   if (ranks.rank() == 0)
     report(fmt::format("{}.0 and {} more", command.log_paths.front(), ranks.size() - 1), replayed,
            log.head.mesh_hash);

@@ -65,6 +65,27 @@ TEST(IdArena, ReducesItsCapacityByTheLastNumberGiven) {
   EXPECT_FALSE(arena.reduce_capacity(1000));
 }
 
+TEST(IdArena, SharesIdsByNeedAndReturnsThem) {
+  SharedIds shared;
+  shared.add(100);
+  IdArena small(100, 1, 12, &shared);
+  small.take(10, 0);
+  {
+    IdArena large(100, 1, 12, &shared);
+    large.take(70, 0);
+    EXPECT_THROW(large.take(21, 0), std::bad_alloc);
+    EXPECT_FALSE(large.is_exhausted()) << "the others have taken them";
+    EXPECT_TRUE(large.reduce_capacity(15));
+    EXPECT_THROW(small.take(6, 0), std::bad_alloc);
+    EXPECT_TRUE(large.reduce_capacity(10)) << "five are given back";
+    small.take(6, 0);
+    EXPECT_FALSE(large.reduce_capacity(15)) << "fewer are left";
+    EXPECT_THROW(large.take(1, 0), std::bad_alloc);
+  }
+  small.take(84, 0);
+  EXPECT_THROW(small.take(1, 0), std::bad_alloc);
+}
+
 TEST(Pool, ReusesTheDyingCellsOfItsNode) {
   const Box box{{0, 0, 0}, {1, 1, 1}};
   Mesh mesh(box, 1 << 20, 2);

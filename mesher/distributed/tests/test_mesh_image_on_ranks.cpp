@@ -131,11 +131,11 @@ INSTANTIATE_TEST_SUITE_P(Ranks, MeshImageOnRanks, testing::Values(1, 3, 4));
 TEST(RanksOfOneProcess, ShareAnIsosurfaceAndAreEachChargedWithIt) {
   const LabelImage image = ball(24, 9);
   std::vector<MeshingOnRanks> apart(3), together(3);
-  SharedIsosurface isosurface;
+  SharedInProcess shared;
   for (auto* results : {&apart, &together})
     run_ranks({.num_ranks = 3}, [&](Communication& ranks) {
       (*results)[static_cast<std::size_t>(ranks.rank())] = mesh_image_on_ranks(
-          image, options_with_radius(1.5), ranks, {}, {}, results == &together ? &isosurface : nullptr);
+          image, options_with_radius(1.5), ranks, {}, {}, results == &together ? &shared : nullptr);
     });
   for (std::size_t rank = 0; rank < 3; ++rank) {
     EXPECT_EQ(together[rank].piece.mesh.cells, apart[rank].piece.mesh.cells);
@@ -198,6 +198,30 @@ TEST(RanksThatDiffer, AreRefusedByAllWhereLeavesDoNotFitInTheMemoryOfOne) {
               mesh_image_on_ranks(image, options, ranks);
             }).find("rank 1 of 3: a leaf size of 0.3 mm gives"),
             std::string::npos);
+}
+
+// In the first memory in which a rank alone exceeds its part, sharing lets all of them finish.
+TEST(RanksOfOneProcess, ShareMemoryByNeed) {
+  constexpr int kRanks = 4;
+  const LabelImage image = ball(24, 9);
+  const auto is_complete_in = [&](std::uint64_t bytes, SharedInProcess* shared) {
+    MeshingOptions options = options_with_radius(0.8);
+    options.limits.max_memory_bytes = bytes;
+    bool is_complete = false;
+    try {
+      run_ranks({.num_ranks = kRanks, .one_at_a_time = true}, [&](Communication& ranks) {
+        const MeshingOnRanks made = mesh_image_on_ranks(image, options, ranks, {}, {}, shared);
+        if (ranks.rank() == 0) is_complete = made.report.stop_reason == StopReason::kComplete;
+      });
+    } catch (const std::bad_alloc&) {  // between rounds
+    }
+    return is_complete;
+  };
+  std::uint64_t bytes = 10 << 20;
+  while (is_complete_in(bytes, nullptr)) bytes = bytes / 32 * 31;
+  SharedInProcess shared, little;
+  EXPECT_TRUE(is_complete_in(bytes, &shared));
+  EXPECT_FALSE(is_complete_in(bytes / 4, &little));
 }
 
 // The seeds take more than the store has.
