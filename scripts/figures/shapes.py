@@ -8,6 +8,11 @@ def _passed(row):
     return "all" if row["status"] == "ok" else f"{row['status']}: {row['reason']}"
 
 
+def _settings(row):
+    return {"image": row["input"]["name"], "trial": row["trial"].split(",")[0],
+            "threads": row["asked"].get("threads", 1)}
+
+
 def _of_trials(rows, has_option):
     found = [row for row in rows if has_option(row["asked"]) and not row["warmup"]]
     if not found:
@@ -51,8 +56,7 @@ def lines(rows):
     table = []
     for row in _of_trials(rows, lambda asked: asked.get("lines") and "mesher" not in asked):
         kept, ways = row.get("lines"), row.get("line_distances") or {}
-        table.append({"image": row["input"]["name"], "trial": row["trial"].split(",")[0],
-                      "lines, mm": f"{kept['traced_mm']:.0f}" if kept else "",
+        table.append({**_settings(row), "lines, mm": f"{kept['traced_mm']:.0f}" if kept else "",
                       "kept, %": _percent(kept["share_kept"]) if kept else "",
                       "undecided places": len(kept["undecided"]) if kept else "",
                       "stray, mm": f"{kept['stray_mm']:.1f}" if kept else "",
@@ -68,8 +72,7 @@ def boxes(rows):
     """Flat boxes by image and trial."""
     table = []
     for row in _of_trials(rows, lambda asked: asked.get("box") == "flat"):
-        table.append({"image": row["input"]["name"], "trial": row["trial"].split(",")[0],
-                      "facets on sides": sum((row.get("facets_of_sides") or {}).values()),
+        table.append({**_settings(row), "facets on sides": sum((row.get("facets_of_sides") or {}).values()),
                       "off a plane, ulp": row.get("box_ulps_off"),
                       "facets off their side": row.get("guarantees", {}).get("off_sides", ""),
                       "cells": row.get("cells"), "claims": _passed(row), "replay": row["replay"]})
@@ -81,8 +84,8 @@ def thin(rows):
     table = []
     for row in _of_trials(rows, lambda asked: asked.get("thin") == "keep"):
         kept = row.get("thin_layers") or {}
-        table.append({"image": row["input"]["name"], "trial": row["trial"].split(",")[0],
-                      "components": kept.get("components", ""), "ambiguous places": kept.get("ambiguous_places", ""),
+        table.append({**_settings(row), "components": kept.get("components", ""),
+                      "ambiguous places": kept.get("ambiguous_places", ""),
                       "differences at first": kept.get("differences_at_first", ""),
                       "left and listed": len(kept["differences"]) if kept else "",
                       "passes": kept.get("passes", ""), "topology": row.get("verdicts", {}).get("topology", ""),
