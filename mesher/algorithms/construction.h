@@ -47,6 +47,7 @@ struct Problem {
   const ThinLayers* thin = nullptr;                    // that these deltas keep; null: none is kept
   const Lines* lines = nullptr;                        // to keep as edges; null: none
   double lines_delta_mm = 0;                           // distance at which they are sampled
+  const LineNetwork* box_curves = nullptr;             // on the sides of a flat box; null: the box is open
   /// Receives R7's progress, from 0 to 1, and the number of cells in the store.
   std::function<void(double fraction, std::uint64_t cells)> observe_perturbation = {};
 };

@@ -6,6 +6,7 @@
 #include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
+#include "algorithms/sample_box.h"
 #include "algorithms/sample_lines.h"
 
 namespace podm {
@@ -41,6 +42,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
   construction.reduce_capacity(bytes_of_leaves);
+  sample_box(construction, levels.final, "initial");
   sample_lines(construction, levels.final);
   levels.initial.lines = levels.final.lines;
   refine_anywhere(construction, "initial", levels.initial, construction.all_cells(),

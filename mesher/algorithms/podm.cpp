@@ -9,6 +9,7 @@
 #include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm_loop.h"
+#include "algorithms/sample_box.h"
 #include "algorithms/sample_lines.h"
 #include "refine/virtual_box.h"
 
@@ -80,6 +81,7 @@ Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
   Parameters parameters = parameters_for(problem, 1, clamp);
+  sample_box(construction, parameters, "refine");
   sample_lines(construction, parameters);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers());
   mend_topology(construction, parameters);

@@ -15,6 +15,7 @@
 #include "algorithms/mend_topology.h"
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
+#include "algorithms/sample_box.h"
 #include "algorithms/sample_lines.h"
 #include "geometry/spread_point.h"
 #include "refine/virtual_box.h"
@@ -54,6 +55,7 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
     return looking_up_places(num_samples);
   });
   Parameters parameters = parameters_for(problem, 1, clamp);
+  sample_box(construction, parameters, "refine");
   sample_lines(construction, parameters);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "geometry/point.h"
 
@@ -34,6 +36,21 @@ inline Affine inverse(const Affine& a) {
 
 inline Point map(const Affine& a, const Point& p) {
   const auto row = [&](std::size_t r) { return a[r] * p.x + a[r + 1] * p.y + a[r + 2] * p.z + a[r + 3]; };
+  return {row(0), row(4), row(8)};
+}
+/// The same, with an error below one unit in the last place of the largest term: rounding errors are summed
+/// apart (Ogita, Rump and Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26 (2005), Dot2).
+inline Point map_accurately(const Affine& a, const Point& p) {
+  const auto row = [&](std::size_t r) {
+    double sum = a[r + 3], errors = 0;
+    for (const auto& [factor, x] :
+         {std::pair(a[r], p.x), std::pair(a[r + 1], p.y), std::pair(a[r + 2], p.z)}) {
+      const double product = factor * x, next = sum + product, part = next - sum;
+      errors += std::fma(factor, x, -product) + ((sum - (next - part)) + (product - part));
+      sum = next;
+    }
+    return sum + errors;
+  };
   return {row(0), row(4), row(8)};
 }
 inline std::array<double, 3> map(const Affine& a, const std::array<double, 3>& x) {

@@ -153,6 +153,9 @@ class Oracle {
   SurfacePoint moved_onto_edge(const SurfacePoint& z, double reach_mm) const;
   /// The same, or else a point of the curve in which an interface with background meets the side.
   SurfacePoint settled_on_edge(const SurfacePoint& z, double reach_mm) const;
+  /// The point of an edge of the box, or of a curve in which an interface with background meets a side, near
+  /// p. `sides` are those of the edge or curve. None if there is no such point within half a voxel.
+  std::optional<SurfacePoint> on_curve_of_box(const Point& p, SideMask sides) const;
   /// True if the same search finds a change along ab. The label at both ends must be `label`.
   bool is_crossed(const Point& a, const Point& b, LabelIndex label) const {
     if (box_) [[unlikely]]
@@ -250,6 +253,7 @@ class Oracle {
   [[gnu::noinline]] std::optional<NearPoint> near_point_in_box(const Point& p, double radius,
                                                                const Cover& cover) const;
   std::optional<NearPoint> near_interface(const Point& p, double radius, const Cover& cover) const;
+  std::optional<SurfacePoint> near_curve(const SurfacePoint& z, double reach_mm) const;
   Point beside_on_side(const SurfacePoint& near, const Point& p) const;
   std::optional<SurfacePoint> intersection_in_box(const Point& a, const Point& b) const;
   std::optional<SurfacePoint> intersection_from_outside(const Point& a, const Point& b) const;

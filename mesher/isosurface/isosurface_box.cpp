@@ -5,6 +5,7 @@
 // of a side with a label crosses one. If it has a label, a side is as near as its plane, unless the
 // projection onto the plane is background. Then the way there crosses an interface, which is nearer.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "isosurface/isosurface.h"
@@ -111,11 +112,25 @@ SurfacePoint Oracle<Reads>::settled_on_edge(const SurfacePoint& z, double reach_
   constexpr double kBeyond = 1.02;
   const SurfacePoint on_edge = moved_onto_edge(z, reach_mm);
   if (on_edge.sides != z.sides) return on_edge;
+  const std::optional<SurfacePoint> on_curve = near_curve(z, reach_mm);
+  if (!on_curve) return z;
+  const bool ends_object = label_clamped(z + kBeyond * (*on_curve - z)) == kBackground;
+  return ends_object && squared_distance(z, *on_curve) < reach_mm * reach_mm ? *on_curve : z;
+}
+
+// The point nearest to z of all interfaces, on the sides of z.
+template <class Reads>
+std::optional<SurfacePoint> Oracle<Reads>::near_curve(const SurfacePoint& z, double reach_mm) const {
   const std::optional<NearPoint> near = near_interface(z, reach_mm, {});
-  if (!near || (box_->snapped(near->point).sides & z.sides) != z.sides) return z;
-  const SurfacePoint on_curve = polished(*near, z);
-  const bool ends_object = label_clamped(z + kBeyond * (on_curve - z)) == kBackground;
-  return ends_object && squared_distance(z, on_curve) < reach_mm * reach_mm ? on_curve : z;
+  if (!near || (box_->snapped(near->point).sides & z.sides) != z.sides) return std::nullopt;
+  return polished(*near, z);
+}
+
+template <class Reads>
+std::optional<SurfacePoint> Oracle<Reads>::on_curve_of_box(const Point& p, SideMask sides) const {
+  const SurfacePoint z{box_->moved_onto(sides, p), sides};
+  if (std::popcount(sides) == 1) return near_curve(z, 0.5 * shortest_side_mm_);
+  return label_clamped(z) != kBackground ? std::optional(z) : std::nullopt;
 }
 
 template <class Reads>
@@ -148,6 +163,7 @@ std::optional<SurfacePoint> Oracle<Reads>::intersection_from_outside(const Point
   template std::optional<SurfacePoint> Oracle<Reads>::exit_through_side(const Point&, const Point&) const; \
   template SurfacePoint Oracle<Reads>::moved_onto_edge(const SurfacePoint&, double) const;                 \
   template SurfacePoint Oracle<Reads>::settled_on_edge(const SurfacePoint&, double) const;                 \
+  template std::optional<SurfacePoint> Oracle<Reads>::on_curve_of_box(const Point&, SideMask) const;       \
   template std::optional<SurfacePoint> Oracle<Reads>::intersection_in_box(const Point&, const Point&) const;
 PODM_INSTANTIATE(NoReads)
 PODM_INSTANTIATE(CountedReads)

@@ -183,6 +183,16 @@ VertexId Worker<Locks>::insert_on_line(const Point& p, CellId near) {
 }
 
 template <class Locks>
+bool Worker<Locks>::insert_sample(const SurfacePoint& z, CellId start, double least_mm) {
+  bool is_near = operation_.plan_insertion(z, start) != StepResult::kDone;
+  operation_.for_each_region_vertex_near(
+      least_mm * least_mm, [&](VertexId v) { is_near = is_near || is_on_isosurface(mesh_.vertex(v).kind); });
+  const bool is_planned = !is_near && plan_r6_removals(z) == StepResult::kDone;
+  if (!is_planned) operation_.rollback();
+  return is_planned && commit(z, VertexKind::kIsosurface, Rule::kR1, z.sides) == Outcome::kCommitted;
+}
+
+template <class Locks>
 void Worker<Locks>::begin_perturbation(const DihedralBounds& bounds, std::uint64_t seed) {
   perturbation_.emplace(mesh_, isosurface_, parameters_, rules_, operation_, bounds, seed, reads_);
 }

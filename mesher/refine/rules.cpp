@@ -336,10 +336,8 @@ SurfacePoint RulesOn<Cells>::moved_to_sides(const SurfacePoint& z, double reach)
 // by this share of its radius, and stays above the floor of the spacing.
 template <class Cells>
 double RulesOn<Cells>::reach_at(const Point& z, double share, CellId c, unsigned facet) const {
-  constexpr double kAboveFloor = 1.01;
   const auto first = static_cast<unsigned>(kFacetVertices[facet][0]);
-  const double radius = distance(z, mesh_.point(mesh_.cell(c).vertices[first]));
-  return std::max(0.0, std::min(share * radius, radius - kAboveFloor * parameters_.least_spacing_mm(true)));
+  return share * distance(z, mesh_.point(mesh_.cell(c).vertices[first]));
 }
 
 template <class Cells>

@@ -46,23 +46,25 @@
 //   delta(c) < 2 delta(p). Further |c - z| <= |p - c| < 4 delta(p), and delta(z) < delta(p) + 8 L delta(p) =
 //   3 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 4 + 4 + 3. With one delta it is 5 delta.
 //
-// Flat box (isosurface/box_planes.h). Each sample has a set of sides that it is on. R3 also
-// applies to a facet whose dual edge leaves a label through a side, unless all three vertices are on that
-// side. Then the facets that end the object there lie in the plane: the dual edge of such a facet leads from
-// a center in the box to one outside. R1 to R6 never move a vertex, and R7 keeps its sides.
+// Flat box (isosurface/box_planes.h). Each sample has a set of sides that it is on. R3 also applies to a
+// facet whose dual edge leaves a label through a side, unless all three vertices are on that side. Then the
+// facets that end the object there lie in the plane: the dual edge of such a facet leads from a center in the
+// box to one outside. R1 to R6 never move a vertex, and R7 keeps its sides.
 //   Spacing. R3's ball is empty, and its radius is at least the facet's circumradius. If all three vertices
 //   are samples, that is m / sqrt(3) or more, so each such insertion may leave 0.17 m. kSpacingFloorOfBox
 //   ends a chain of them. The other rules keep what they keep in terms of m, whatever m is.
-//   The point moves to an edge of the box, or to the curve in which an interface meets the side, if one is
-//   within 0.7 of the ball's radius, and then keeps 0.3 of it. As soon as all facets at the sides lie in
-//   their planes, the edges of the box where the object touches them are edges of the mesh, and its corners
-//   vertices: the boundary is closed, and facets in different planes can only meet there.
-//   The planes are reached, up to the floor. Let a be a vertex off the side and z the point at which its
-//   facet leaves. If a is on another side, the edge between the two is nearer to z than a is. If it is on an
-//   interface, it is 0.45 voxels or more from the plane (BoxPlanes::snapped), or as far as R3 may move its
-//   point: half of the radius of an empty ball. Planes are tried one by one, the nearest first. Within half a
-//   voxel of the plane the interface stands at right angles to it. Facets that the floor leaves off their
-//   side are counted (Guarantees::off_sides).
+//   Edges of the box, and the curves in which interfaces with background meet its sides, are sampled before
+//   R1 (algorithms/sample_box.h), at least 0.7 delta apart, so that m begins at 0.7 s. R3's point moves to
+//   one of them that is within 0.7 of the ball's radius, and then keeps 0.3 of it. A point that stayed beside
+//   an edge would call for the next one, nearer to it. As soon as all facets at the sides lie in their
+//   planes, the edges of the box where the object touches them are edges of the mesh, and its corners
+//   vertices: the boundary is closed, and facets in different planes can only meet there. The planes are
+//   reached, up to the floor. Let a be a vertex off the side and z the point at which its facet leaves. If a
+//   is on another side, the edge between the two is nearer to z than a is. If it is on an interface, it is
+//   0.45 voxels or more from the plane (BoxPlanes::snapped), or as far as R3 may move its point: half of the
+//   radius of an empty ball. Planes are tried one by one, the nearest first. Within half a voxel of the plane
+//   the interface stands at right angles to it. Facets that the floor leaves off their side are counted
+//   (Guarantees::off_sides).
 // R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
 // measured.
 //

@@ -45,6 +45,9 @@ class Worker {
   /// Inserts a vertex on a line, as R0 does, while no other worker runs. `near` is a living cell near it.
   /// Returns kNoVertex if another vertex is too near.
   VertexId insert_on_line(const Point& p, CellId near);
+  /// Inserts a sample of the isosurface in the ball of the cell `start`, with R6, while no other worker runs.
+  /// Returns false if an isosurface vertex is within `least_mm`.
+  bool insert_sample(const SurfacePoint& z, CellId start, double least_mm);
   /// The cells that the last insertion made.
   const std::vector<CellId>& created() const { return operation_.created(); }
   /// From now on only R7 is applied, to a mesh that violates no other rule. `seed` seeds the choice of new

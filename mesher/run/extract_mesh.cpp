@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "image/working_frame.h"
+#include "run/facets_of_sides.h"
+#include "run/mend_turned_cells.h"
 #include "runtime/huge_array.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_resize.h"
@@ -194,9 +196,16 @@ class Extractor {
       out_ids_[v] = static_cast<std::uint32_t>(at);
       if (!is_on_isosurface(mesh_.vertex(v).kind)) out_ids_[v] |= kOffIsosurface;
       if (out_.is_box_flat) out_.vertex_sides[at] = mesh_.vertex(v).sides;
-      const Point p = map(to_world_, mesh_.point(v));
+      const Point p = is_turned_ ? turned(mesh_.point(v)) : map(to_world_, mesh_.point(v));
       out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
     }
+  }
+
+  // Vertices on a side of the box stay within two units in the last place of its plane.
+  Point turned(const Point& p) const {
+    const LabelImage& image = isosurface_.image();
+    const auto& s = image.spacing;
+    return map_accurately(image.voxel_to_ras, {p.x / s[0], p.y / s[1], p.z / s[2]});
   }
 
   void number_vertices_of_cells() {
@@ -236,6 +245,7 @@ class Extractor {
   const CellFilter& is_wanted_;
   const Isosurface& isosurface_;
   const Affine to_world_;
+  const bool is_turned_ = is_turned_for_output(isosurface_.image());
   const bool is_mirrored_ =
       determinant(to_world_) < 0;  // a swap of two vertices of each cell restores its orientation
   std::size_t threads_;
@@ -266,6 +276,7 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int 
   out.space = space;
   out.is_box_flat = isosurface.image().is_box_flat;
   facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();
+  if (is_turned_for_output(isosurface.image())) mend_turned_cells(out, isosurface.image(), threads);
   return out;
 }
 
@@ -282,6 +293,10 @@ void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image, int threads)
     for_each(mesh.cells, [](auto& cell) { std::swap(cell[2], cell[3]); });
     for_each(mesh.facets, [](auto& facet) { std::swap(facet[1], facet[2]); });
   }
+  for (std::size_t v = 0; v < mesh.vertex_sides.size(); ++v)
+    for (std::size_t side = 0; side < kNumSides; ++side)
+      if ((mesh.vertex_sides[v] >> side & 1) != 0)
+        mesh.vertices[v][side / 2] = side % 2 == 0 ? -0.5 : image.size[side / 2] - 0.5;
   mesh.space = Space::kVoxel;
 }
 

@@ -82,6 +82,10 @@ void PhasesOfRun::transform(MeshingReport& report, const MakeIsosurface& make) {
   if (options_.lines.are_kept) trace(weights, report);
   announce("transform", 0, 0);
   const double start_s = seconds_();
+  if (image_.is_box_flat)
+    box_curves_ = trace_lines(
+        image_, weights.get(),
+        {.is_box_flat = true, .threads = loop_threads_, .most_bytes = memory_of_run(options_.limits)});
   isosurface_ = make(std::move(weights));
   object_ = foreground_bounds(image_, loop_threads_);
   asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
@@ -145,6 +149,7 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
       .thin = thin ? &*thin : nullptr,
       .lines = lines_.get(),
       .lines_delta_mm = options_.lines.delta_mm > 0 ? options_.lines.delta_mm : kLinesDelta * sizes.delta_mm,
+      .box_curves = box_curves_ ? &*box_curves_ : nullptr,
       .observe_perturbation = [&](double fraction, std::uint64_t cells) {
         announce("perturb", fraction, cells);
       }};

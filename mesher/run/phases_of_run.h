@@ -80,6 +80,7 @@ class PhasesOfRun {
   const Seconds seconds_;
   std::shared_ptr<const Isosurface> isosurface_;
   std::unique_ptr<const Lines> lines_;          // null: no lines are kept
+  std::optional<LineNetwork> box_curves_;       // none: the box is open
   SizeOptions sizes_;                           // sizes of the last mesh
   std::optional<SizeField> size_field_;         // size field of the last mesh
   std::shared_ptr<const SizeGrid> asked_grid_;  // of the requested sizes

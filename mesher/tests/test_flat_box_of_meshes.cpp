@@ -10,6 +10,7 @@
 #include "geometry/affine.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_io.h"
+#include "run/mend_turned_cells.h"
 #include "tests/fault_of.h"
 #include "tests/images.h"
 
@@ -108,7 +109,8 @@ void expect_flat(const LabelImage& image, const MeshingResult& made) {
 // The object fills the box: its boundary is the box, with all edges and corners.
 TEST(FlatBoxOfMesh, IsTheBoxOfAFilledImage) {
   const LabelImage image = filled_block();
-  const MeshingResult made = mesh_image(image, flat(2.5, 1.2));
+  constexpr double kDelta = 1.2;
+  const MeshingResult made = mesh_image(image, flat(2.5, kDelta));
   expect_flat(image, made);
   const TetMesh& mesh = made.mesh;
   double volume = 0;
@@ -123,7 +125,10 @@ TEST(FlatBoxOfMesh, IsTheBoxOfAFilledImage) {
     for (std::size_t b = a + 1; b < 6; ++b) {
       if (a / 2 == b / 2) continue;
       const auto edge = static_cast<SideMask>(1u << a | 1u << b);
-      EXPECT_NEAR(length_of(mesh, edges_on(mesh, edge)), length[3 - a / 2 - b / 2], 1e-9);
+      const auto edges = edges_on(mesh, edge);
+      EXPECT_NEAR(length_of(mesh, edges), length[3 - a / 2 - b / 2], 1e-9);
+      // They are sampled before the sides: few facets on the sides cut them into shorter ones.
+      EXPECT_GT(length_of(mesh, edges), 0.6 * kDelta * static_cast<double>(edges.size()));
     }
   for (std::size_t a = 0; a < 3; ++a) {
     const double face = length[(a + 1) % 3] * length[(a + 2) % 3];
@@ -160,6 +165,53 @@ TEST(FlatBoxOfMesh, HoldsInAnyFrame) {
     for (const auto& [label, mm3] : made.report.volume_of_label_mm3) volume += mm3;
     EXPECT_NEAR(volume, 12 * 10 * 9, 1e-8 * volume) << frame.name;
   }
+}
+
+// In voxels, planes are half integers.
+TEST(FlatBoxOfMesh, IsExactInVoxels) {
+  LabelImage image = filled_block();
+  for (const NamedAffine& frame : affines()) {
+    if (std::string(frame.name).find("sheared") != std::string::npos) continue;
+    image.voxel_to_ras = frame.affine;
+    MeshingOptions options = flat(2.5, 1.5);
+    options.space = Space::kVoxel;
+    const TetMesh mesh = mesh_image(image, options).mesh;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      for (std::size_t side = 0; side < kNumSides; ++side)
+        if ((mesh.vertex_sides[v] >> side & 1) != 0) {
+          ASSERT_EQ(mesh.vertices[v][side / 2], side % 2 == 0 ? -0.5 : image.size[side / 2] - 0.5);
+        }
+  }
+}
+
+// Rounding inverts cells whose vertices lie in one plane across the image's axes; they are mended.
+TEST(FlatBoxOfMesh, HasNoInvertedCellsInAnyFrame) {
+  for (const NamedAffine& frame : affines()) {
+    if (std::string(frame.name).find("sheared") != std::string::npos) continue;
+    for (int n = 2; n < 8; ++n) {
+      LabelImage image = flat(make_image({2, n, 1 + n % 2}, {1, 1, 1}, 2,
+                                         [&](int i, int j, int) { return j > n / 2 ? 1 : (i + j) % 3; }));
+      image.voxel_to_ras = frame.affine;
+      EXPECT_EQ(mesh_image(image, flat(0.9, 0.6)).report.guarantees.orientation, 0) << frame.name << n;
+    }
+  }
+}
+
+TEST(MendTurnedCells, MakesFlatCellsPositive) {
+  LabelImage image = flat(make_image({3, 3, 3}, {1, 1, 1}, 1, [](int, int, int) { return 1; }));
+  image.voxel_to_ras = {0.6, -0.8, 0, 0, 0.8, 0.6, 0, 0, 0, 0, 1, 0};
+  TetMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 1}};
+  mesh.vertex_sides.assign(5, 1 << 4);
+  mesh.cells = {{0, 1, 2, 3}, {0, 1, 2, 4}};
+  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 1);  // no vertex may leave side k-
+  mesh.vertex_sides[3] = 1 << 0 | 1 << 3;
+  const auto before = mesh.vertices;
+  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 0);
+  EXPECT_GT(mesh.vertices[3][2], 0);
+  EXPECT_NEAR(mesh.vertices[3][2], 0, 1e-12);
+  mesh.vertices[3] = before[3];
+  EXPECT_EQ(mesh.vertices, before);
 }
 
 // In frames that are permuted or mirrored all vertices on a side have one coordinate.

@@ -1,0 +1,89 @@
+#include "algorithms/sample_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "delaunay/walk.h"
+#include "lines/arc.h"
+
+namespace podm {
+
+namespace {
+
+// Both are relative to delta. R1's samples keep delta from the ends of an edge that is at most sqrt(2) delta
+// long, and thus are not in its diametral ball.
+constexpr double kMostSpacing = 1.4, kLeastSpacing = 0.7;
+
+// Inserts samples, as the only worker.
+class BoxSampler {
+ public:
+  BoxSampler(Construction& construction, const Parameters& parameters, const char* phase)
+      : stop_(construction.stop()),
+        mesh_(construction.mesh()),
+        isosurface_(construction.problem().isosurface),
+        parameters_(parameters),
+        workers_(construction.make_workers<NoLocks>(parameters, 1, phase)),
+        worker_(*workers_.front()) {}
+  ~BoxSampler() { worker_.flush_log(); }
+  BoxSampler(const BoxSampler&) = delete;
+
+  void sample(const LineNetwork& curves) {
+    for (const LineNode& node : curves.nodes)
+      if (ends_object(node.labels)) insert(node.point, node.sides);
+    for (const LineArc& arc : curves.arcs)
+      if (ends_object(arc.labels)) sample(arc);
+  }
+
+ private:
+  static bool ends_object(const std::vector<LabelIndex>& labels) { return labels.front() == kBackground; }
+  double delta_at(const Point& p) const {
+    return parameters_.deltas != nullptr ? parameters_.deltas->at(p) : parameters_.delta_mm;
+  }
+
+  void sample(const LineArc& curve) {
+    const Arc arc(curve);
+    double position = 0;
+    while (position < arc.length() && !is_over()) {
+      const double left = arc.length() - position;
+      position += left / std::ceil(left / (kMostSpacing * delta_at(arc.point_at(position))));
+      insert(arc.point_at(position), curve.sides);
+    }
+  }
+
+  void insert(const Point& p, SideMask sides) {
+    const std::optional<SurfacePoint> z = isosurface_.on_curve_of_box(p, sides);
+    if (!z) return;
+    while (!mesh_.cell(last_).is_alive()) last_ = (last_ + 1) % mesh_.cell_bound();
+    last_ = cell_with(mesh_, *z, last_);
+    if (worker_.insert_sample(*z, last_, kLeastSpacing * delta_at(*z))) last_ = worker_.created().front();
+  }
+
+  // One look at the limits takes much less time than an insertion.
+  bool is_over() {
+    meter_.report(worker_, stop_);
+    stop_.check_limits();
+    return stop_.is_over();
+  }
+
+  StopControl& stop_;
+  CellMeter meter_;
+  Mesh& mesh_;
+  const Isosurface& isosurface_;
+  const Parameters& parameters_;
+  const Construction::Workers<NoLocks> workers_;
+  Worker<NoLocks>& worker_;
+  CellId last_ = 0;
+};
+
+}  // namespace
+
+void sample_box(Construction& construction, const Parameters& parameters, const char* phase) try {
+  const LineNetwork* curves = construction.problem().box_curves;
+  if (curves == nullptr || construction.stop().is_over()) return;
+  construction.timed(phase, [&] { BoxSampler(construction, parameters, phase).sample(*curves); });
+} catch (const std::bad_alloc&) {
+  construction.stop().end(StopReason::kMemoryLimit);
+}
+
+}  // namespace podm
