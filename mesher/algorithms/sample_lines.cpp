@@ -267,7 +267,7 @@ void check_delta(const Problem& problem, const Parameters& parameters) {
 
 void sample_lines(Construction& construction, Parameters& parameters) try {
   const Problem& problem = construction.problem();
-  if (problem.lines == nullptr || construction.stop().is_over()) return;
+  if (problem.lines == nullptr) return;
   construction.timed(kLines, [&] {
     check_delta(problem, parameters);
     const double floor_mm = kFloor * std::min(parameters.spacing_mm, problem.lines_delta_mm);

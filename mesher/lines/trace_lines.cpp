@@ -41,6 +41,7 @@ class LineTracer {
   LineNetwork operator()();
 
  private:
+  bool is_over() const { return options_.is_over && options_.is_over(); }
   std::uint64_t num_squares_with_curves() const;
   template <class Work>
   void for_each_task(const Work& work) const;
@@ -58,13 +59,14 @@ class LineTracer {
   std::vector<UndecidedPlace> undecided_;
 };
 
-// Calls work(task, thread, j begin, j end, k) for rows of blocks (j,k).
+// Calls work(task, thread, j begin, j end, k) for rows of blocks (j,k), until tracing is over.
 template <class Work>
 void LineTracer::for_each_task(const Work& work) const {
   const int num_j = grid_.size(1) + 1, tasks_of_layer = (num_j + kRowsOfTask - 1) / kRowsOfTask;
   const auto num_tasks =
       static_cast<std::size_t>(tasks_of_layer) * static_cast<std::size_t>(grid_.size(2) + 1);
   parallel_for(num_tasks, threads_, [&](std::size_t task, std::size_t thread) {
+    if (is_over()) return;
     const int k = static_cast<int>(task / static_cast<std::size_t>(tasks_of_layer)) - 1;
     const int begin = static_cast<int>(task % static_cast<std::size_t>(tasks_of_layer)) * kRowsOfTask - 1;
     work(task, thread, begin, std::min(begin + kRowsOfTask, num_j - 1), k);
@@ -132,6 +134,7 @@ void LineTracer::trace_sides() {
   parts_.resize(first + rows.size() + 1);
   std::vector<std::unique_ptr<SquareTracer>> tracers(threads_);
   parallel_for(rows.size(), threads_, [&](std::size_t r, std::size_t thread) {
+    if (is_over()) return;
     if (!tracers[thread]) tracers[thread] = std::make_unique<SquareTracer>(grid_);
     const auto& [side, q] = rows[r];
     for (int p = -1; p < grid_.size(side.u()); ++p) tracers[thread]->trace(side, p, q, parts_[first + r]);
@@ -193,6 +196,12 @@ void LineTracer::list_removed(const std::vector<Point>& points) {
   for (const Point& p : points) undecided_.push_back({block_at(p), p, UndecidedPlace::Reason::kTooSmall});
 }
 
+LineNetwork ended_early() {
+  LineNetwork network;
+  network.is_whole = false;
+  return network;
+}
+
 // Converts the graph; nodes without arcs are left out.
 LineNetwork LineTracer::network(LineGraph& graph) {
   LineNetwork network;
@@ -226,6 +235,7 @@ LineNetwork LineTracer::network(LineGraph& graph) {
 LineNetwork LineTracer::operator()() {
   if (options_.has_lines) trace_blocks();
   if (options_.is_box_flat) trace_sides();
+  if (is_over()) return ended_early();
   for (const Pieces& part : parts_)
     undecided_.insert(undecided_.end(), part.undecided.begin(), part.undecided.end());
   LineGraph graph = join_pieces(parts_, threads_);

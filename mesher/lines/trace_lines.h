@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct LineOptions {
   bool is_box_flat = false;       ///< trace the box, to which the object is cut
   std::vector<bool> counts = {};  ///< by label: curves need three that count; empty if all count
   int threads = 0;                ///< 0: all cores
+  /// Any thread asks at each few rows of blocks. Once it is true, tracing ends.
+  std::function<bool()> is_over = nullptr;
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -41,6 +44,7 @@ std::uint64_t memory_of_lines(const LabelImage& image, const LineOptions& option
 
 /// Traces the lines of an image that holds its voxels. `weights` is null unless interfaces are smoothed.
 /// Throws InputError if the estimated memory exceeds the limit, or if a sheared image is to have a flat box.
+/// The network is empty, and not whole, if tracing ended early.
 LineNetwork trace_lines(const LabelImage& image, const VoxelWeights* weights, const LineOptions& options);
 
 }  // namespace podm

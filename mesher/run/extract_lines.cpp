@@ -96,6 +96,7 @@ class VerticesOnLines {
 
 class LineExtractor {
  public:
+    report_.is_traced = network_.is_whole;
   LineExtractor(const Mesh& mesh, const LineEdges& edges, const LabelImage& image, LinesReport& report)
       : mesh_(mesh),
         edges_(edges),

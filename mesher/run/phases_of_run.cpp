@@ -115,8 +115,16 @@ std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) c
 void PhasesOfRun::trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report) {
   announce("lines", 0, 0);
   const double start_s = seconds_();
-  const LineOptions traced{
-      .has_lines = true, .threads = loop_threads_, .most_bytes = memory_of_run(options_.limits)};
+  StopControl stop(
+      {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
+  const LineOptions traced{.has_lines = true,
+                           .threads = loop_threads_,
+                           .is_over =
+                               [&] {
+                                 stop.check_limits();
+                                 return stop.is_over();
+                               },
+                           .most_bytes = memory_of_run(options_.limits)};
   lines_ = std::make_unique<const Lines>(trace_lines(image_, weights.get(), traced), image_, weights);
   report.phases_s["trace"] = seconds_() - start_s;
 }

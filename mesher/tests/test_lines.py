@@ -3,11 +3,13 @@
 import collections
 import itertools
 import os
+import signal
+import time
 import unittest
 
 import numpy as np
 
-from podm_process import PROGRAM, PodmTestCase, read_medit, run_podm
+from podm_process import PROGRAM, PodmTestCase, read_medit, run_podm, start_podm
 from slow import few
 from small_images import write_nifti
 
@@ -213,6 +215,25 @@ class Lines(PodmTestCase):
             record = self.assert_ends_early("element limit", "--lines-delta", 0.3, "--max-elements", cells)
             self.assertLess(record["counters"]["store_cells"], cells + 200)
             self.assertLess(record["lines"]["edges"], whole["lines"]["edges"])
+
+    def assert_ended_while_lines_were_traced(self, reason):
+        record = self.read_record(self.runs)
+        self.assertEqual(record["stop_reason"], reason)
+        self.assertFalse(record["lines"]["is_traced"])
+        self.assertFalse(record["lines"]["is_claimed"])
+        self.assertLess(record["phases_s"]["trace"], 2.5)
+
+    def test_limits_and_signals_end_the_tracing_of_lines(self):
+        """Tracing all lines of this noise takes far longer."""
+        self.use(noise(3, 56, 20))
+        self.assert_exit(self.mesh("--lines", "--max-seconds", 1), 1)
+        self.assert_ended_while_lines_were_traced("time limit")
+        self.runs.unlink()
+        process = start_podm("mesh", self.image, "-o", self.out, "--record", self.runs, "--radius", 2.5, "--lines")
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assert_ended_while_lines_were_traced("cancelled")
 
     def test_lines_of_an_earlier_mesh_are_reported(self):
         beside = self.folder / "out_lines.vtu"

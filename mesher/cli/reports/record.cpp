@@ -289,6 +289,7 @@ Json lines_of(const MeshingReport& report) {
           {"untraced_mm", of.untraced_mm},
           {"share_kept", of.share_kept()},
           {"stray_mm", of.stray_mm},
+          {"is_traced", of.is_traced},
           {"is_claimed", of.is_claimed()},
           {"edges", of.edges},
           {"splits", of.splits},

@@ -159,6 +159,7 @@ std::string near_lines_text(const LinesReport& of) {
 std::string lines_text(const MeshingReport& report) {
   if (!report.lines) return "";
   const LinesReport& of = *report.lines;
+  if (!of.is_traced) return "lines      not traced: the run ended before\n";
   std::string text =
       fmt::format("lines      {} edges, {:.6g} of {:.6g} mm ({:.3f} %), sampled at {:.4g} mm; {} splits\n",
                   of.edges, of.kept_mm, of.traced_mm, 100 * of.share_kept(), of.delta_mm, of.splits);

@@ -12,6 +12,7 @@
 namespace podm {
 
 struct LinesReport {
+  bool is_traced = true;              ///< false: the run ended before the lines were traced
   double delta_mm = 0;                ///< lines were sampled at this distance
   double floor_mm = 0;                ///< shorter edges were not split
   std::uint64_t arcs = 0, nodes = 0;  ///< of the traced lines
@@ -44,14 +45,15 @@ struct LinesReport {
   /// Length of edges around which three or more labels meet in the mesh, and that are not kept as lines.
   /// Layers thinner than delta have such edges around their holes.
   double stray_mm = 0;
-  /// True if at most 0.05 % of the lines is missing, at most 0.1 % is missing or untraced, and at most 0.1 %
-  /// of the edges where three labels meet are strays. The file then claims its lines. podm-verify allows 0.1
-  /// % of lines and edges. There is a margin because it counts points of the lines, not lengths.
+  /// True if the lines are traced, at most 0.05 % of them is missing, at most 0.1 % is missing or untraced,
+  /// and at most 0.1 % of the edges where three labels meet are strays. The file then claims its lines.
+  /// podm-verify allows 0.1 % of lines and edges. There is a margin because it counts points of the lines,
+  /// not lengths.
   bool is_claimed() const {
     constexpr double kMost = 1e-3;
     const double missing_mm = traced_mm - kept_mm;
-    return missing_mm <= kMost / 2 * traced_mm && missing_mm + untraced_mm <= kMost * traced_mm &&
-           stray_mm <= kMost * (kept_mm + stray_mm);
+    return is_traced && missing_mm <= kMost / 2 * traced_mm &&
+           missing_mm + untraced_mm <= kMost * traced_mm && stray_mm <= kMost * (kept_mm + stray_mm);
   }
   double share_kept() const { return traced_mm > 0 ? kept_mm / traced_mm : 1; }
 };

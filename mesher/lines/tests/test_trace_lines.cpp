@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -465,6 +466,18 @@ TEST(TraceLines, FeaturesBelowTheLatticeAreListed) {
     return std::binary_search(arc.labels.begin(), arc.labels.end(), 3);
   });
   EXPECT_TRUE(is_listed || is_traced);
+}
+
+TEST(TraceLines, EndsWithoutLinesOnceTheRunIsOver) {
+  Random random(31);
+  const LabelImage image = noise(random, {20, 20, 20}, 5, 0.3);
+  constexpr int kMost = 3;
+  std::atomic<int> num_traced = 0;
+  const LineNetwork network = trace_lines(
+      image, nullptr, {.has_lines = true, .threads = 2, .is_over = [&] { return ++num_traced > kMost; }});
+  EXPECT_TRUE(network.is_empty());
+  EXPECT_FALSE(network.is_whole);
+  EXPECT_TRUE(trace_lines(image, nullptr, {.has_lines = true}).is_whole);
 }
 
 TEST(TraceLines, RefusesWhatItCannotDo) {
