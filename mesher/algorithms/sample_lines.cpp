@@ -10,9 +10,9 @@
 
 #include "algorithms/podm.h"
 #include "delaunay/walk.h"
-#include "lines/few_labels.h"
 #include "podm/errors.h"
 #include "podm/option.h"
+#include "refine/line_survey.h"
 
 namespace podm {
 
@@ -41,10 +41,6 @@ class LineSampler {
   LineSampler(const LineSampler&) = delete;
 
   void sample();
-  void list_all() {
-    for (std::size_t arc = 0; arc < lines_.num_arcs(); ++arc)
-      edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) { listed_.push_back(edge); });
-  }
   /// Splits edges until none is left to split, or the run is over. Returns the number of splits.
   std::uint64_t split_all();
   /// Vertices without an edge in the mesh that has three labels around it count as other vertices of the
@@ -57,11 +53,13 @@ class LineSampler {
   bool is_over();
   VertexId insert(const LinePoint& at);
   void sample(std::size_t arc);
-  void list_around();
+  void list_poor();
+  void list_beside(VertexId inserted);
+  bool leaves_arc(const LineEdge& edge) const {
+    return lines_.arc(edge.arc).chord_deviation(edge.from, edge.to) > kMostDeviation * edges_.delta_mm();
+  }
   bool is_current(const LineEdge& edge) const;
   bool is_to_be_split(const LineEdge& edge);
-  bool is_in_mesh(const LineEdge& edge);
-  bool has_three_labels(const LineEdge& edge);
   bool split(const LineEdge& edge);
   void find_ball(VertexId v);
   void note_changed(const std::vector<CellId>& cells) {
@@ -118,7 +116,6 @@ void LineSampler::sample() {
     edges_.num_inexact += !is_exact;
   }
   for (std::size_t arc = 0; arc < lines_.num_arcs() && !is_over(); ++arc) sample(arc);
-  list_all();
 }
 
 void LineSampler::sample(std::size_t arc) {
@@ -153,65 +150,34 @@ bool LineSampler::is_current(const LineEdge& edge) const {
   return is_found;
 }
 
-// Collects the cells around v.
+// Leaves the cells around v in ball_.
 void LineSampler::find_ball(VertexId v) {
   last_ = cell_with(mesh_, mesh_.point(v), living_cell());
-  ball_.clear();
-  const auto add = [&](CellId c) {
-    if (mesh_.is_marked(c)) return;
-    mesh_.mark(c, true);
-    ball_.push_back(c);
-  };
-  add(last_);
-  for (std::size_t i = 0; i < ball_.size(); ++i) {
-    const Cell& cell = mesh_.cell(ball_[i]);
-    for (unsigned k = 0; k < 4; ++k)
-      if (cell.vertices[k] != v && cell.mirrors[k] != kNoFacet) add(cell_of(cell.mirrors[k]));
-  }
-  for (const CellId c : ball_) mesh_.mark(c, false);
+  find_around_vertex(mesh_, v, last_, ball_);
 }
 
+// An edge is in the mesh if one of the cells around its first vertex has it.
 bool LineSampler::is_to_be_split(const LineEdge& edge) {
   if (!edges_.may_be_split(edge)) return false;
-  if (lines_.arc(edge.arc).chord_deviation(edge.from, edge.to) > kMostDeviation * edges_.delta_mm())
-    return true;
-  if (!is_in_mesh(edge)) return true;
-  const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
-  return std::ranges::any_of(ball_, [&](CellId c) {
-    const auto& vertices = mesh_.cell(c).vertices;
-    return std::ranges::find(vertices, edge.last) != vertices.end() &&
-           std::ranges::any_of(vertices, [&](VertexId v) {
-             const Point& p = mesh_.point(v);
-             return v != edge.first && v != edge.last && dot(a - p, b - p) < 0;
-           });
-  });
-}
-
-// Leaves the ball of the first vertex in ball_.
-bool LineSampler::is_in_mesh(const LineEdge& edge) {
+  if (leaves_arc(edge)) return true;
   find_ball(edge.first);
-  return std::ranges::any_of(ball_, [&](CellId c) {
-    const auto& vertices = mesh_.cell(c).vertices;
-    return std::ranges::find(vertices, edge.last) != vertices.end();
-  });
-}
-
-bool LineSampler::has_three_labels(const LineEdge& edge) {
-  if (!is_in_mesh(edge)) return false;
-  FewLabels labels;
+  const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
+  bool is_in_mesh = false;
   for (const CellId c : ball_) {
-    const auto& vertices = mesh_.cell(c).vertices;
-    if (labels.size() < 3 && std::ranges::find(vertices, edge.last) != vertices.end())
-      labels.insert(rules_.label_of(c));
+    if (!mesh_.cell(c).has(edge.last)) continue;
+    is_in_mesh = true;
+    for (const VertexId v : mesh_.cell(c).vertices)
+      if (v != edge.first && v != edge.last && is_in_diametral_ball(mesh_.point(v), a, b)) return true;
   }
-  return labels.size() >= 3;
+  return !is_in_mesh;
 }
 
 std::uint64_t LineSampler::give_up_lost() {
   std::vector<bool> has_edge(mesh_.vertex_bound());
+  const LineSurvey survey(mesh_, edges_, [&](CellId c) { return rules_.label_of(c); });
   for (std::size_t arc = 0; arc < lines_.num_arcs(); ++arc)
     edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
-      if (has_three_labels(edge)) has_edge[edge.first] = has_edge[edge.last] = true;
+      if (survey.around(edge).labels.size() >= 3) has_edge[edge.first] = has_edge[edge.last] = true;
     });
   std::uint64_t count = 0;
   for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
@@ -225,16 +191,34 @@ std::uint64_t LineSampler::give_up_lost() {
   return count;
 }
 
-// Lists the edges of the vertices of new cells.
-void LineSampler::list_around() {
+// Lists the edges that may have to be split. Labels are not needed.
+void LineSampler::list_poor() {
+  const LineSurvey survey(mesh_, edges_, [](CellId) { return kUnknownLabel; });
+  for (std::size_t arc = 0; arc < lines_.num_arcs(); ++arc)
+    edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) {
+      const LineSurvey::Around& around = survey.around(edge);
+      if (around.labels.empty() || around.has_vertex_in_ball || leaves_arc(edge)) listed_.push_back(edge);
+    });
+}
+
+// Lists the edges that a new vertex on a line makes, and those with the vertex in their balls: both ends of
+// these are vertices of its cells (line_keeper.h), unless they are listed already or cannot be split. All
+// other edges stay in the mesh, with no vertex in their balls.
+void LineSampler::list_beside(VertexId inserted) {
   std::vector<VertexId> vertices;
   for (const CellId c : worker_.created())
     for (const VertexId v : mesh_.cell(c).vertices)
       if (mesh_.vertex(v).kind == VertexKind::kLine) vertices.push_back(v);
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  edges_.for_each_edge_of(inserted, [&](const LineEdge& edge) { listed_.push_back(edge); });
+  const Point& p = mesh_.point(inserted);
   for (const VertexId v : vertices)
-    edges_.for_each_edge_of(v, [&](const LineEdge& edge) { listed_.push_back(edge); });
+    edges_.for_each_edge_of(v, [&](const LineEdge& edge) {
+      if (edge.first == v && v != inserted && edge.last != inserted &&
+          is_in_diametral_ball(p, mesh_.point(v), mesh_.point(edge.last)))
+        listed_.push_back(edge);
+    });
 }
 
 bool LineSampler::split(const LineEdge& edge) {
@@ -242,12 +226,13 @@ bool LineSampler::split(const LineEdge& edge) {
   const VertexId v = insert(at);
   if (v == kNoVertex) return false;
   edges_.split(edge, v, at);
-  list_around();
+  list_beside(v);
   return true;
 }
 
 std::uint64_t LineSampler::split_all() {
   std::uint64_t count = 0;
+  list_poor();
   for (; !listed_.empty() && !is_over(); listed_.pop_front()) {
     const LineEdge edge = listed_.front();
     if (is_current(edge) && is_to_be_split(edge)) count += split(edge);
@@ -289,7 +274,6 @@ void mend_lines(Construction& construction, const Parameters& parameters) try {
     Construction::Entries changed;
     construction.timed(kLines, [&] {
       LineSampler sampler(construction, parameters);
-      sampler.list_all();
       num_changes = sampler.split_all() + sampler.give_up_lost();
       changed = sampler.take_changed();
     });

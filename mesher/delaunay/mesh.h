@@ -120,6 +120,9 @@ struct alignas(64) Cell {
   std::array<FacetId, 4> mirrors{};  // per facet, the mirror facet on its other side
   // A living cell has four distinct vertices. Untouched memory and dead cells have equal ones.
   bool is_alive() const { return vertices[0] != vertices[1]; }
+  bool has(VertexId v) const {
+    return vertices[0] == v || vertices[1] == v || vertices[2] == v || vertices[3] == v;
+  }
 };
 static_assert(sizeof(Cell) == 64);
 

@@ -251,12 +251,9 @@ bool Operation<Locks>::removes(VertexId v) const {
 template <class Locks>
 bool Operation<Locks>::keeps_edge(VertexId u, VertexId v) const {
   return std::any_of(region_.boundary.begin(), region_.boundary.end(), [&](FacetId facet) {
-    const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
-    const auto has = [&](VertexId w) {
-      return vertices[static_cast<unsigned>(index_in_cell(facet))] != w &&
-             std::find(vertices.begin(), vertices.end(), w) != vertices.end();
-    };
-    return has(u) && has(v);
+    const Cell& cell = mesh_.cell(cell_of(facet));
+    const VertexId opposite = cell.vertices[static_cast<unsigned>(index_in_cell(facet))];
+    return u != opposite && v != opposite && cell.has(u) && cell.has(v);
   });
 }
 

@@ -25,4 +25,20 @@ CellId cell_with(const Mesh& mesh, const Point& p, CellId from) {
   }
 }
 
+void find_around_vertex(Mesh& mesh, VertexId v, CellId c, std::vector<CellId>& ball) {
+  ball.clear();
+  const auto add = [&](CellId each) {
+    if (mesh.is_marked(each)) return;
+    mesh.mark(each, true);
+    ball.push_back(each);
+  };
+  add(c);
+  for (std::size_t i = 0; i < ball.size(); ++i) {
+    const Cell& cell = mesh.cell(ball[i]);
+    for (unsigned k = 0; k < 4; ++k)
+      if (cell.vertices[k] != v && cell.mirrors[k] != kNoFacet) add(cell_of(cell.mirrors[k]));
+  }
+  for (const CellId each : ball) mesh.mark(each, false);
+}
+
 }  // namespace podm

@@ -1,8 +1,9 @@
-// Visibility walk to the cell that contains a point. In a Delaunay triangulation such walks end
-// (Edelsbrunner, Combinatorica 10 (1990) 251-260).
+// Walks from cell to cell: to the cell that contains a point, and around an edge or a vertex. The visibility
+// walk to a point ends in a Delaunay triangulation (Edelsbrunner, Combinatorica 10 (1990) 251-260).
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "delaunay/mesh.h"
 
@@ -15,6 +16,10 @@ CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous)
 /// The mesh must not change meanwhile. Returns a cell that contains p, a point in the box or on its boundary.
 /// `from` must be alive.
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from);
+
+/// Leaves the cells around v in `ball`, `c` first, which is one of them. It marks them meanwhile, so that no
+/// worker may run.
+void find_around_vertex(Mesh& mesh, VertexId v, CellId c, std::vector<CellId>& ball);
 
 /// Returns a cell around the edge from u to v for which accept(cell) holds. `c` is one of these cells. All of
 /// them may be read under locks on u and v, which must not lie on the box.

@@ -21,6 +21,10 @@ inline Vector cross(const Vector& a, const Vector& b) {
 inline double squared_length(const Vector& a) { return dot(a, a); }
 inline double squared_distance(const Point& a, const Point& b) { return squared_length(a - b); }
 inline double distance(const Point& a, const Point& b) { return std::sqrt(squared_distance(a, b)); }
+/// True if p is inside the ball of which a and b are the ends of a diameter.
+inline bool is_in_diametral_ball(const Point& p, const Point& a, const Point& b) {
+  return dot(a - p, b - p) < 0;
+}
 inline bool lexicographically_less(const Point& a, const Point& b) {
   if (a.x != b.x) return a.x < b.x;
   if (a.y != b.y) return a.y < b.y;

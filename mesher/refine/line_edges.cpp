@@ -39,8 +39,8 @@ void LineEdges::join(std::size_t arc, const std::vector<Sample>& inner) {
   }
   start_of_arc_[arc] = all.front().vertex;
   for (std::size_t i = 1; i < all.size(); ++i) {
-    set_after(all[i - 1].vertex, number, all[i]);
-    set_before(all[i].vertex, number, all[i - 1]);
+    set_neighbor(all[i - 1].vertex, number, Side::kAfter, all[i]);
+    set_neighbor(all[i].vertex, number, Side::kBefore, all[i - 1]);
   }
 }
 
@@ -50,25 +50,15 @@ LineEdges::NodeEnd& LineEdges::end_at(VertexId node_vertex, std::uint32_t arc, b
   throw InternalError("an arc does not end at its node");
 }
 
-void LineEdges::set_after(VertexId v, std::uint32_t arc, const Sample& after) {
+void LineEdges::set_neighbor(VertexId v, std::uint32_t arc, Side side, const Sample& neighbor) {
+  const bool is_after = side == Side::kAfter;
   if (Record& record = records_[v]; record.arc < kAtNode) {
-    record.after = after.vertex;
-    record.to = after.position;
+    (is_after ? record.after : record.before) = neighbor.vertex;
+    (is_after ? record.to : record.from) = neighbor.position;
   } else {
-    NodeEnd& end = end_at(v, arc, true);
-    end.neighbor = after.vertex;
-    end.position = after.position;
-  }
-}
-
-void LineEdges::set_before(VertexId v, std::uint32_t arc, const Sample& before) {
-  if (Record& record = records_[v]; record.arc < kAtNode) {
-    record.before = before.vertex;
-    record.from = before.position;
-  } else {
-    NodeEnd& end = end_at(v, arc, false);
-    end.neighbor = before.vertex;
-    end.position = before.position;
+    NodeEnd& end = end_at(v, arc, is_after);
+    end.neighbor = neighbor.vertex;
+    end.position = neighbor.position;
   }
 }
 
@@ -101,7 +91,7 @@ LinePoint LineEdges::point_at(std::size_t arc, double position) const {
 
 // Near nodes that stand for several the arc is not exactly on its line, and the exact point may be far.
 LinePoint LineEdges::split_point_in_ball(const LineEdge& edge, const Point& a, const Point& b) const {
-  const auto is_in_ball = [&](const Point& p) { return dot(a - p, b - p) < 0; };
+  const auto is_in_ball = [&](const Point& p) { return is_in_diametral_ball(p, a, b); };
   LinePoint at = split_point(edge);
   if (is_in_ball(at.point)) return at;
   at.is_exact = false;
@@ -113,9 +103,9 @@ LinePoint LineEdges::split_point_in_ball(const LineEdge& edge, const Point& a, c
 void LineEdges::split(const LineEdge& edge, VertexId v, const LinePoint& at) {
   records_[v] = {edge.arc, edge.first, edge.last, edge.from, at.position, edge.to};
   step();
-  set_after(edge.first, edge.arc, {v, at.position});
+  set_neighbor(edge.first, edge.arc, Side::kAfter, {v, at.position});
   step();
-  set_before(edge.last, edge.arc, {v, at.position});
+  set_neighbor(edge.last, edge.arc, Side::kBefore, {v, at.position});
   num_splits.fetch_add(1, std::memory_order_relaxed);
   if (!at.is_exact) num_inexact.fetch_add(1, std::memory_order_relaxed);
 }

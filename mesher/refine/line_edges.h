@@ -19,7 +19,8 @@
 // worker. The table of arcs and the lists at nodes have their size before workers run.
 //
 // A split is written after the commit of its vertex, under the same locks. A worker that finds an edge
-// therefore finds its vertices in the mesh.
+// therefore finds its vertices in the mesh. Tests: Schedules (algorithms/tests/test_schedules.cpp), which
+// find that two locks are too few to look up edges; ci/race.sh finds the same with the thread sanitizer.
 #pragma once
 
 #include <array>
@@ -140,8 +141,9 @@ class LineEdges {
   };
 
   NodeEnd& end_at(VertexId node_vertex, std::uint32_t arc, bool is_start);
-  void set_after(VertexId v, std::uint32_t arc, const Sample& after);
-  void set_before(VertexId v, std::uint32_t arc, const Sample& before);
+  // The two neighbours of a vertex along an arc.
+  enum class Side { kBefore, kAfter };
+  void set_neighbor(VertexId v, std::uint32_t arc, Side side, const Sample& neighbor);
   LineEdge edge_after(VertexId v, std::uint32_t arc) const;
   double split_position(const LineEdge& edge) const;
 

@@ -62,7 +62,7 @@ class LineKeeper {
   static constexpr int kMostTransfers = 4;
 
   bool is_in_ball(const Point& p, const LineEdge& edge) const {
-    return dot(mesh_.point(edge.first) - p, mesh_.point(edge.last) - p) < 0;
+    return is_in_diametral_ball(p, mesh_.point(edge.first), mesh_.point(edge.last));
   }
   bool find_encroached(const Point& p, bool for_split);
   bool was_tried(const LineEdge& edge) const {
@@ -88,11 +88,8 @@ class LineKeeper {
 template <class Locks>
 std::optional<CellId> LineKeeper<Locks>::cell_of_region_with(const LineEdge& edge) const {
   for (const CellId c : operation_.region_cells()) {
-    const auto& vertices = mesh_.cell(c).vertices;
-    const auto has = [&](VertexId v) {
-      return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
-    };
-    if (has(edge.first) && has(edge.last)) return c;
+    const Cell& cell = mesh_.cell(c);
+    if (cell.has(edge.first) && cell.has(edge.last)) return c;
   }
   return std::nullopt;
 }
@@ -141,7 +138,7 @@ StepResult LineKeeper<Locks>::look_in(CellId c) {
     if (mesh_.vertex(v).kind != VertexKind::kLine) continue;
     edges_.for_each_edge_of(v, [&](const LineEdge& edge) {
       if (edge_ || edge.first != v || !edges_.may_be_split(edge)) return;
-      if (std::find(vertices.begin(), vertices.end(), edge.last) == vertices.end()) return;
+      if (!mesh_.cell(c).has(edge.last)) return;
       const bool is_encroached = std::any_of(vertices.begin(), vertices.end(), [&](VertexId w) {
         return w != v && w != edge.last && is_in_ball(mesh_.point(w), edge);
       });
@@ -161,9 +158,7 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(CellId c) {
   for (const VertexId v : vertices) {
     if (!is_on_line(v)) continue;
     edges_.for_each_edge_of(v, [&](const LineEdge& edge) {
-      if (sample || edge.first != v ||
-          std::find(vertices.begin(), vertices.end(), edge.last) == vertices.end() || has_all_labels(edge, c))
-        return;
+      if (sample || edge.first != v || !mesh_.cell(c).has(edge.last) || has_all_labels(edge, c)) return;
       sample = sample_of_missing(edge);
       if (!sample && edges_.may_be_split(edge)) edge_ = edge;
     });

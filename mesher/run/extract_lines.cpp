@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "image/working_frame.h"
 #include "io/lines_of_facets.h"
 #include "lines/line_graph.h"
+#include "refine/line_survey.h"
 
 namespace podm {
 
@@ -20,18 +20,7 @@ namespace {
 constexpr const char *kBesideOther = "too near another line", *kTooSmall = "too small to be sampled",
                      *kNoEdge = "no edge of the mesh";
 
-// An edge, whatever the order of its ends.
-using Key = std::uint64_t;
-Key key_of(std::uint32_t u, std::uint32_t v) { return Key{std::min(u, v)} << 32 | std::max(u, v); }
-Key key_of(const LineEdge& edge) { return key_of(edge.first, edge.last); }
-
-// Labels in ascending order, without repetitions.
-using LabelSet = std::vector<LabelIndex>;
-
-void insert_label(LabelSet& labels, LabelIndex label) {
-  const auto at = std::ranges::lower_bound(labels, label);
-  if (at == labels.end() || *at != label) labels.insert(at, label);
-}
+EdgeKey key_of(const LineEdge& edge) { return edge_key(edge.first, edge.last); }
 
 // The vertices on lines, by cubes. A cube's side is at least the length of any edge, so a ball around an edge
 // meets at most eight cubes.
@@ -82,11 +71,10 @@ class VerticesOnLines {
   }
   bool has_another_in_ball_and_cube(const LineEdge& edge, const Cube& cube) const {
     const Point &a = mesh_.point(edge.first), &b = mesh_.point(edge.last);
-    return std::ranges::any_of(std::ranges::equal_range(vertices_, cube, {}, &Entry::cube),
-                               [&](const Entry& other) {
-                                 const Point& p = mesh_.point(other.vertex);
-                                 return other.arc != edge.arc && dot(a - p, b - p) < 0;
-                               });
+    return std::ranges::any_of(
+        std::ranges::equal_range(vertices_, cube, {}, &Entry::cube), [&](const Entry& other) {
+          return other.arc != edge.arc && is_in_diametral_ball(mesh_.point(other.vertex), a, b);
+        });
   }
 
   const Mesh& mesh_;
@@ -96,19 +84,19 @@ class VerticesOnLines {
 
 class LineExtractor {
  public:
-    report_.is_traced = network_.is_whole;
   LineExtractor(const Mesh& mesh, const LineEdges& edges, const LabelImage& image, LinesReport& report)
       : mesh_(mesh),
         edges_(edges),
         network_(edges.lines().network()),
         image_(image),
         report_(report),
-        vertices_(mesh, edges) {}
+        vertices_(mesh, edges),
+        survey_(mesh, edges, [&](CellId c) { return mesh.label(c); }) {}
 
   MeshLines operator()() {
-    find_labels_around_edges();
     report_.delta_mm = out_.delta_mm = edges_.delta_mm();
     report_.floor_mm = edges_.floor_mm();
+    report_.is_traced = network_.is_whole;
     report_.arcs = network_.arcs.size();
     report_.nodes = network_.nodes.size();
     report_.splits = edges_.num_splits;
@@ -121,7 +109,6 @@ class LineExtractor {
   }
 
  private:
-  void find_labels_around_edges();
   const char* why_left_out(const LineEdge& edge) const;
   void add(std::size_t arc);
   void keep(const LineEdge& edge);
@@ -140,33 +127,16 @@ class LineExtractor {
   const LabelImage& image_;
   LinesReport& report_;
   VerticesOnLines vertices_;
-  std::unordered_map<Key, LabelSet> around_;  // by edge of the table: the labels of the cells around it
-  std::unordered_set<Key> kept_;
+  LineSurvey survey_;
+  std::unordered_set<EdgeKey> kept_;
   std::map<LabelSet, std::uint32_t> lines_;
   MeshLines out_;
 };
 
-void LineExtractor::find_labels_around_edges() {
-  for (std::size_t arc = 0; arc < network_.arcs.size(); ++arc)
-    edges_.for_each_edge_of_arc(arc, [&](const LineEdge& edge) { around_.try_emplace(key_of(edge)); });
-  std::vector<bool> is_on_line(mesh_.vertex_bound());
-  for (const auto& [key, labels] : around_)
-    is_on_line[key >> 32] = is_on_line[static_cast<VertexId>(key)] = true;
-  for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
-    if (!mesh_.cell(c).is_alive()) continue;
-    const auto& vertices = mesh_.cell(c).vertices;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < i && is_on_line[vertices[i]]; ++j)
-        if (is_on_line[vertices[j]])
-          if (const auto found = around_.find(key_of(vertices[i], vertices[j])); found != around_.end())
-            insert_label(found->second, mesh_.label(c));
-  }
-}
-
 // Null if the edge is kept. Two arcs may join the same vertices: the edge is then the first one's.
 const char* LineExtractor::why_left_out(const LineEdge& edge) const {
   if (kept_.contains(key_of(edge))) return kBesideOther;
-  if (std::ranges::includes(around_.at(key_of(edge)), network_.arcs[edge.arc].labels)) return nullptr;
+  if (std::ranges::includes(survey_.around(edge).labels, network_.arcs[edge.arc].labels)) return nullptr;
   return vertices_.has_another_in_ball_of(edge) ? kBesideOther : kNoEdge;
 }
 
@@ -203,7 +173,7 @@ void LineExtractor::keep(const LineEdge& edge) {
   kept_.insert(key_of(edge));
   report_.kept_mm += edges_.length(edge);
   out_.edges.push_back({edge.first, edge.last});
-  out_.line_of_edge.push_back(line_of(around_.at(key_of(edge))));
+  out_.line_of_edge.push_back(line_of(survey_.around(edge).labels));
 }
 
 // Four arcs end at a node where four labels meet. For each arc that tracing contracts into a node, two more
@@ -234,10 +204,10 @@ MeshLines extract_lines(const Mesh& mesh, const LineEdges& edges, const LabelIma
 }
 
 std::vector<std::array<std::uint32_t, 2>> stray_edges(const TetMesh& mesh) {
-  std::unordered_set<Key> kept;
-  for (const auto& [u, v] : mesh.lines.edges) kept.insert(key_of(u, v));
+  std::unordered_set<EdgeKey> kept;
+  for (const auto& [u, v] : mesh.lines.edges) kept.insert(edge_key(u, v));
   std::vector<std::array<std::uint32_t, 2>> edges = lines_of_facets(mesh, mesh.lines.delta_mm).edges;
-  std::erase_if(edges, [&](const auto& edge) { return kept.contains(key_of(edge[0], edge[1])); });
+  std::erase_if(edges, [&](const auto& edge) { return kept.contains(edge_key(edge[0], edge[1])); });
   return edges;
 }
 

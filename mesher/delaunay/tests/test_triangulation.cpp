@@ -6,6 +6,7 @@
 
 #include "delaunay/hole.h"
 #include "delaunay/tests/validity.h"
+#include "delaunay/walk.h"
 #include "point_sets.h"
 #include "triangulator.h"
 
@@ -61,6 +62,23 @@ TEST_P(Triangulation, CombinedOperationEqualsItsParts) {
   std::string fault;
   EXPECT_TRUE(is_valid(combined.mesh, &fault)) << fault;
   EXPECT_EQ(combined.cells(), expected.cells());
+}
+
+TEST_P(Triangulation, HasTheCellsAroundAVertexThatAWalkFinds) {
+  Triangulator t(kBox);
+  for (const Point& p : shuffled(GetParam().make(), 7)) t.insert(p);
+  std::vector<CellId> ball;
+  for (VertexId v = 0; v < t.mesh.vertex_bound(); ++v) {
+    const CellId first = t.cell_around(v);
+    find_around_vertex(t.mesh, v, first, ball);
+    EXPECT_EQ(ball.front(), first);
+    std::sort(ball.begin(), ball.end());
+    std::vector<CellId> expected;
+    for (CellId c = 0; c < t.mesh.cell_bound(); ++c)
+      if (t.mesh.cell(c).is_alive() && t.mesh.cell(c).has(v)) expected.push_back(c);
+    EXPECT_EQ(ball, expected);
+    for (const CellId c : ball) EXPECT_FALSE(t.mesh.is_marked(c));
+  }
 }
 
 // The kernel computes several spheres side by side; the reference computes one.
