@@ -5,15 +5,16 @@
 # lock contract (mesher/delaunay/lock_contract.h), without ITK, which phantoms do not need. Runs the tests. Those of
 # the contract require that it finds planted faults of the lock protocol. Four threads then mesh phantoms for
 # RACE_SECONDS (120), by podm, pdr, pdr-podm and podm-home in turn. Stops with exit code 1 at the first finding, at a
-# mesh that podm-verify rejects, or at a mesh that differs from the replay of its log. Each mesh is made once more and
-# optimised.
+# mesh that podm-verify rejects, or at a mesh that differs from the replay of its log. Each mesh is made once more with
+# --lines, and once more and optimised.
 #
 # Without the contract, the sanitizer must also find each planted fault (mesher/delaunay/planted_fault.h). If it does
 # not, it would not detect a broken protocol, and the script exits with 1. The tests of memory orders find each order
 # of the kernel that is planted as relaxed. The tests of the threads of a rank that learn vertices find one lock or no
 # lock to walk, three locks instead of four to replace a cell, and relaxed locks. The meshes find, within two minutes:
 # one lock instead of two or no lock to read a cell; three locks instead of four to replace it, by refinement or by
-# optimisation; a lock that is taken or released with the relaxed order.
+# optimisation; two locks instead of four to look up edges on lines; a lock that is taken or released with the relaxed
+# order.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-race
@@ -85,19 +86,26 @@ mesh() {
 start=$(date +%s)
 count=0
 while [ "$(seconds_since "$start")" -lt "$seconds" ]; do
-  mesh "$count" --log "$build/run.log" --verify || { echo "run $count failed: exit $?"; exit 1; }
-  build/bin/podm replay "$image" "$build/run.log" 2> "$build/replay.txt" || { cat "$build/replay.txt"; exit 1; }
+  for lines in "" "--lines"; do
+    # shellcheck disable=SC2086  # no word or one
+    mesh "$count" $lines --log "$build/run.log" --verify || { echo "run $count $lines failed: exit $?"; exit 1; }
+    build/bin/podm replay "$image" "$build/run.log" 2> "$build/replay.txt" || { cat "$build/replay.txt"; exit 1; }
+  done
   mesh "$count" --optimize --verify || { echo "run $count, optimised, failed: exit $?"; exit 1; }
   count=$((count + 1))
 done
 echo "== $count runs without a finding"
 
 export PODM_NO_LOCK_CONTRACT=1  # the contract would abort first
-for fault in one_lock no_lock three_locks three_in_cavity relaxed_lock relaxed_unlock; do
+for fault in one_lock no_lock three_locks three_in_cavity two_to_look_up relaxed_lock relaxed_unlock; do
   export PODM_PLANTED_FAULT=$fault
+  case $fault in
+    two_to_look_up) option="--lines" ;;
+    *) option="--optimize" ;;
+  esac
   start=$(date +%s)
   count=0
-  until mesh "$count" --optimize > "$build/$fault.txt" 2>&1; [ $? = $finding ]; do
+  until mesh "$count" $option > "$build/$fault.txt" 2>&1; [ $? = $finding ]; do
     count=$((count + 1))
     [ "$(seconds_since "$start")" -lt $most_seconds_to_find ] || { echo "$fault: not found in $count runs"; exit 1; }
   done

@@ -90,8 +90,9 @@ class Operation {
   /// True if a facet between the cavity that was planned last and other cells has this edge. The edge then
   /// stays when the vertex is inserted.
   bool keeps_edge(VertexId u, VertexId v) const;
-  /// Locks all vertices of c, a cell that may be read.
-  StepResult hold(CellId c) { return lock_cell(c); }
+  /// Locks all vertices of c, a cell that may be read. The fault to be planted leaves it at the two that are
+  /// held.
+  StepResult hold(CellId c) { return locks_taken().to_look_up == 4 ? lock_cell(c) : StepResult::kDone; }
 
   /// Plans the move of v, a vertex of the cell `seed`, to places that are given later. v's ball becomes the
   /// region. kTooNear: the ball has too many vertices. The caller must roll back unless the result is kDone.

@@ -13,10 +13,11 @@ namespace podm {
 /// reads the cell, and `to_replace` before it replaces the cell. With to_replace = 3, it does not lock the
 /// vertex beyond the facet through which it reaches a cell. It checks `in_zone` vertices to decide whether a
 /// cell that it replaces is in the rank's zone. It locks `to_move` vertices of a cell that a move replaces
-/// beyond the ball of its vertex, and `in_cavity` of a cell in the cavity of an optimisation. Its commit is
-/// ordered after those of others by the first `to_order` vertices of its cells, which are all unless planted.
+/// beyond the ball of its vertex, and `in_cavity` of a cell in the cavity of an optimisation. It holds
+/// `to_look_up` vertices of a cell before it looks up their edges on lines. Its commit is ordered after those
+/// of others by the first `to_order` vertices of its cells, which are all unless planted.
 struct LocksTaken {
-  unsigned to_read = 2, to_replace = 4, in_zone = 4, to_move = 4, in_cavity = 4;
+  unsigned to_read = 2, to_replace = 4, in_zone = 4, to_move = 4, in_cavity = 4, to_look_up = 4;
   std::size_t to_order = std::numeric_limits<std::size_t>::max();
 };
 
@@ -34,8 +35,8 @@ enum class OrderedAccess {
 
 #if defined(PODM_INTERLEAVING) || defined(PODM_CHECK_LOCKS)
 /// Returns the planted numbers, or those that $PODM_PLANTED_FAULT selects: no_lock or one_lock to read a
-/// cell, three_locks, three_in_zone, three_to_move or three_in_cavity to replace it, not_ordered to number
-/// its commit. Throws InputError if the variable names another fault.
+/// cell, three_locks, three_in_zone, three_to_move or three_in_cavity to replace it, two_to_look_up edges on
+/// lines, not_ordered to number its commit. Throws InputError if the variable names another fault.
 LocksTaken locks_taken();
 void plant_fault(LocksTaken locks);
 /// Returns `order`, or the relaxed order for the access that $PODM_PLANTED_FAULT selects: relaxed_lock,

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -101,6 +102,15 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
     StopControl stop({}, {}, [](std::uint64_t) {});
     return refine_by(method.algorithm, problem, team, {}, stop);
   }
+  OperationLog finished_log(const std::string& sha256) {
+    const auto& [low, high] = refinement_.mesh->box();
+    log_.finish({.box = {low.x, low.y, low.z, high.x, high.y, high.z},
+                 .image_sha256 = "",
+                 .space = "RAS",
+                 .mesh_sha256 = sha256});
+    log_.publish();
+    return read_operation_log(log_path());
+  }
   TetMesh mesh_of(Mesh& store, MeshingReport& report) {
     MeshLines lines = extract_lines(store, *refinement_.line_edges, image_, report.lines.emplace());
     return extract_mesh(store, isosurface_, Space::kRas, 1, report.guarantees.facet_vertices, {},
@@ -166,17 +176,31 @@ TEST_P(MeshWithLines, HasItsVerticesOnTheLinesExactly) {
   EXPECT_LE(inexact, refinement_.line_edges->num_inexact + 4 * lines_.network().nodes.size() / 100);
 }
 
+// R6 removes circumcenter vertices only, and R7 moves only these and samples of the isosurface. A move is
+// logged as an insertion that removes the old vertex.
+TEST_P(MeshWithLines, HasNoVertexOnALineThatWasRemovedOrMoved) {
+  const OperationLog log = finished_log("");
+  std::map<std::uint32_t, VertexKind> kinds;
+  auto removed = log.all.removed.begin();
+  std::size_t num_moved = 0;
+  for (const LoggedOperation& operation : log.all.operations) {
+    auto kind = static_cast<VertexKind>(operation.kind);
+    for (std::uint32_t i = 0; i < operation.num_removed; ++i) {
+      const VertexKind old = kinds.extract(*removed++).mapped();
+      EXPECT_NE(old, VertexKind::kLine);
+      if (operation.kind == kMovedVertex) kind = old;  // only its id changes
+      num_moved += old == kind && operation.kind != kMovedVertex;
+    }
+    kinds[operation.vertex] = kind;
+  }
+  EXPECT_EQ(num_moved > 0, std::get<LineMethod>(GetParam()).is_perturbed);
+}
+
 TEST_P(MeshWithLines, EqualsItsReplay) {
-  const auto& [low, high] = refinement_.mesh->box();
   MeshingReport report;
   TetMesh mesh = mesh_of(*refinement_.mesh, report);
   canonicalize(mesh, 1);
-  log_.finish({.box = {low.x, low.y, low.z, high.x, high.y, high.z},
-               .image_sha256 = "",
-               .space = "RAS",
-               .mesh_sha256 = mesh_sha256(mesh)});
-  log_.publish();
-  const OperationLog log = read_operation_log(log_path());
+  const OperationLog log = finished_log(mesh_sha256(mesh));
   const std::unique_ptr<Mesh> replayed = replay(log);
   std::uint64_t facets_off_isosurface = 0;
   TetMesh again = extract_mesh(*replayed, isosurface_, Space::kRas, 1, facets_off_isosurface);

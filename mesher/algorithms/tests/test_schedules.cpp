@@ -16,13 +16,17 @@
 
 #include "algorithms/perturb_mesh.h"
 #include "algorithms/podm.h"
+#include "algorithms/sample_lines.h"
 #include "algorithms/tests/broken_rule.h"
 #include "algorithms/tests/in_own_process.h"
 #include "delaunay/planted_fault.h"
 #include "delaunay/tests/cells_by_points.h"
 #include "delaunay/tests/validity.h"
 #include "image/foreground.h"
+#include "lines/tests/line_images.h"
+#include "lines/trace_lines.h"
 #include "podm/mesh_image.h"
+#include "refine/tests/fault_of_table.h"
 #include "refine/tests/invariants.h"
 #include "refine/virtual_box.h"
 #include "replay/replay.h"
@@ -34,7 +38,7 @@ namespace {
 
 constexpr unsigned kMostSeconds = 20;  // limit of a schedule; most take some hundredths
 
-constexpr int kSound = 100, kMostToFind = 10000;
+constexpr int kSound = 100, kSoundWithLines = 40, kMostToFind = 10000;
 // Meshes of these seeds have a vertex of R4 nearer than sqrt(2 + sqrt(3)) s, as rules.h allows.
 constexpr std::array kWithNearVertices{6276, 7193, 9434};
 // After R7 a ball of this seed's mesh only touches the isosurface, and no vertex covers the polished point.
@@ -56,8 +60,12 @@ std::vector<int> sound_seeds() {
 }
 
 struct Scene {
-  Scene(LabelImage of, double radius)
-      : image(std::move(of)), radius_mm(radius), delta_mm(default_delta_mm(image, radius)) {}
+  Scene(LabelImage of, double radius, bool has_lines = false)
+      : image(std::move(of)), radius_mm(radius), delta_mm(default_delta_mm(image, radius)) {
+    if (has_lines)
+      lines = std::make_unique<Lines>(trace_lines(image, nullptr, {.has_lines = true, .threads = 1}), image,
+                                      nullptr);
+  }
   double spacing_mm() const { return std::min(delta_mm, radius_mm / std::sqrt(2 + std::sqrt(3.0))); }
   Parameters parameters() const {
     return {.delta_mm = delta_mm,
@@ -70,12 +78,15 @@ struct Scene {
   double radius_mm, delta_mm;
   Isosurface isosurface{image, 1};
   SizeField sizes{std::vector<double>(image.labels.size(), radius_mm)};
+  std::unique_ptr<const Lines> lines;  // null: none are kept
 };
 
+using Scenes = std::vector<std::unique_ptr<Scene>>;
+
 // Scenes with some hundred operations each.
-const std::vector<std::unique_ptr<Scene>>& scenes() {
+const Scenes& scenes() {
   static const auto all = [] {
-    std::vector<std::unique_ptr<Scene>> made;
+    Scenes made;
     const auto add = [&](const LabelImage& image, double radius_mm) {
       made.push_back(std::make_unique<Scene>(image, radius_mm));
     };
@@ -91,13 +102,26 @@ const std::vector<std::unique_ptr<Scene>>& scenes() {
   return all;
 }
 
+const Scenes& scenes_with_lines() {
+  static const auto all = [] {
+    Scenes made;
+    Random random(3);
+    made.push_back(std::make_unique<Scene>(polycrystal(random, {5, 5, 5}, {1, 1, 1}, 6, false), 2, true));
+    made.push_back(std::make_unique<Scene>(sectors({6, 6, 6}, 3, {2.4, 2.6, 2.3}, {0.2, 0.3, 1}), 2, true));
+    return made;
+  }();
+  return all;
+}
+
 // PODM that deals the cells of a coarse mesh out to its workers, so that they meet from the start.
 Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
-  refine_anywhere(construction, "initial", parameters_for(problem, 2, clamp), construction.all_cells(), 1);
+  Parameters parameters = parameters_for(problem, 1, clamp), initial = parameters_for(problem, 2, clamp);
+  sample_lines(construction, parameters);
+  initial.lines = parameters.lines;
+  refine_anywhere(construction, "initial", initial, construction.all_cells(), 1);
   const auto num_workers = static_cast<std::size_t>(construction.num_workers());
-  const Parameters parameters = parameters_for(problem, 1, clamp);
   auto workers = construction.make_workers<VertexLocks>(parameters, construction.num_workers());
   for (const auto& entry : construction.all_cells()) workers[entry.cell % num_workers]->give(entry.cell);
   VirtualTime time(stop, num_workers, team.cost, team.coordination.seed);
@@ -106,6 +130,7 @@ Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& s
     if (refine(*workers[self], group, time) && self == 0) group.dismiss();
   });
   construction.account(workers, time);
+  mend_lines(construction, parameters);
   perturb_mesh(construction, parameters);
   return construction.finish();
 }
@@ -115,6 +140,7 @@ class Schedules : public testing::Test {
   Schedules() {
     std::filesystem::create_directories(folder_);
     scenes();
+    scenes_with_lines();
   }
   ~Schedules() override {
     std::filesystem::remove_all(folder_);
@@ -143,30 +169,38 @@ class Schedules : public testing::Test {
         .delta_mm = scene.delta_mm,
         .sizes = scene.sizes,
         .cell_capacity = capacity,
-        .dihedral_bounds = is_perturbed ? std::optional(DihedralBounds(15, 155)) : std::nullopt};
+        .dihedral_bounds = is_perturbed ? std::optional(DihedralBounds(15, 155)) : std::nullopt,
+        .lines = scene.lines.get(),
+        .lines_delta_mm = 1.25 * scene.delta_mm};
     if (algorithm == Algorithm::kPodm) return crowded_podm(problem, team, stop);
     if (algorithm == Algorithm::kPodmHome) return podm_home(problem, team, stop);
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);
   }
-  static const Scene& scene_of(int seed) {
-    return *scenes()[static_cast<std::size_t>(seed) % scenes().size()];
+  static const Scene& scene_of(int seed, const Scenes& in = scenes()) {
+    return *in[static_cast<std::size_t>(seed) % in.size()];
   }
   static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
   }
 
   // Returns the fault of the mesh that a schedule makes, or nothing if the mesh is correct.
-  std::string fault_of(int seed) const try {
-    const Scene& scene = scene_of(seed);
+  std::string fault_of(int seed) const { return fault_of(scene_of(seed), seed); }
+  std::string fault_of(const Scene& scene, int seed) const try {
     OperationLogWriter log(log_path_);
     StopControl stop = patient();
     const Refinement refinement = refine(scene, static_cast<std::uint64_t>(seed), stop, &log);
     if (refinement.stop_reason != StopReason::kComplete) return "the run is not complete";
     Mesh& mesh = *refinement.mesh;
     std::string fault;
-    if (!is_valid(mesh, &fault) || !holds_invariants(mesh, scene.spacing_mm(), 1e-6, &fault)) return fault;
-    if (fault = broken_rule(mesh, scene.isosurface, scene.parameters()); !fault.empty()) return fault;
+    if (!is_valid(mesh, &fault)) return fault;
+    Parameters parameters = scene.parameters();
+    parameters.lines = refinement.line_edges.get();
+    // Near lines the spacing is less (rules.h).
+    fault = scene.lines ? fault_of_table(*refinement.line_edges, mesh) : std::string();
+    if (!fault.empty() || (!scene.lines && !holds_invariants(mesh, scene.spacing_mm(), 1e-6, &fault)))
+      return fault;
+    if (fault = broken_rule(mesh, scene.isosurface, parameters); !fault.empty()) return fault;
     if (!remembers_right_labels(mesh, scene.isosurface)) return "the label of another cell is remembered";
     const auto& [low, high] = mesh.box();
     log.finish({{low.x, low.y, low.z, high.x, high.y, high.z}, "", "RAS", ""});
@@ -178,16 +212,12 @@ class Schedules : public testing::Test {
     return error.what();
   }
 
-  // True if the planted fault shows in a schedule.
-  bool is_found_in(int seed) const {
-    return fails_in_own_process(kMostSeconds, [&] { return !fault_of(seed).empty(); });
-  }
-
-  void expect_found() const {
+  void expect_found(const Scenes& in = scenes()) const {
     int num_run = 0, num_found = 0;
     for (; num_run < num_schedules(kMostToFind); ++num_run) {
       if (num_found > 0 && !counts_all()) break;
-      num_found += is_found_in(num_run);
+      num_found += fails_in_own_process(kMostSeconds,
+                                        [&] { return !fault_of(scene_of(num_run, in), num_run).empty(); });
     }
     std::printf("found in %d of %d schedules\n", num_found, num_run);
     EXPECT_GT(num_found, 0);
@@ -236,6 +266,17 @@ TEST_F(Schedules, FindThatThreeLocksAreTooFewToMove) {
 TEST_F(Schedules, FindThatTheNumberOfACommitMustNotDependOnItsWorkerAlone) {
   plant_fault({.to_order = 0});
   expect_found();
+}
+
+// R0 looks up and splits edges that other workers look up, too.
+TEST_F(Schedules, MakeTheMeshOfASerialRunWithLines) {
+  for (int seed = 0; seed < num_schedules(kSoundWithLines); ++seed)
+    EXPECT_EQ(fault_of(scene_of(seed, scenes_with_lines()), seed), "") << "seed " << seed;
+}
+
+TEST_F(Schedules, FindThatTwoLocksAreTooFewToLookUpEdgesOfLines) {
+  plant_fault({.to_look_up = 2});
+  expect_found(scenes_with_lines());
 }
 
 TEST_F(Schedules, RepeatForTheSameSeed) {
