@@ -13,8 +13,7 @@
 # of the kernel that is planted as relaxed. The tests of the threads of a rank that learn vertices find one lock or no
 # lock to walk, three locks instead of four to replace a cell, and relaxed locks. The meshes find, within two minutes:
 # one lock instead of two or no lock to read a cell; three locks instead of four to replace it, by refinement or by
-# optimisation; two locks instead of four to look up edges on lines; a lock that is taken or released with the relaxed
-# order.
+# optimisation; a lock that is taken or released with the relaxed order.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-race
@@ -97,15 +96,11 @@ done
 echo "== $count runs without a finding"
 
 export PODM_NO_LOCK_CONTRACT=1  # the contract would abort first
-for fault in one_lock no_lock three_locks three_in_cavity two_to_look_up relaxed_lock relaxed_unlock; do
+for fault in one_lock no_lock three_locks three_in_cavity relaxed_lock relaxed_unlock; do
   export PODM_PLANTED_FAULT=$fault
-  case $fault in
-    two_to_look_up) option="--lines" ;;
-    *) option="--optimize" ;;
-  esac
   start=$(date +%s)
   count=0
-  until mesh "$count" $option > "$build/$fault.txt" 2>&1; [ $? = $finding ]; do
+  until mesh "$count" --optimize > "$build/$fault.txt" 2>&1; [ $? = $finding ]; do
     count=$((count + 1))
     [ "$(seconds_since "$start")" -lt $most_seconds_to_find ] || { echo "$fault: not found in $count runs"; exit 1; }
   done

@@ -105,8 +105,7 @@ std::vector<std::size_t> without_pairs(const std::vector<Chain>& chains,
   return left;
 }
 
-std::vector<Point> merge_parallel(std::vector<Chain>& chains) {
-  std::vector<Point> removed;
+void merge_parallel(std::vector<Chain>& chains, RemovedCurves& removed) {
   std::vector<bool> is_done(chains.size());
   std::vector<Chain> merged;
   for (std::size_t a = 0; a < chains.size(); ++a) {
@@ -116,22 +115,34 @@ std::vector<Point> merge_parallel(std::vector<Chain>& chains) {
       if (!is_done[b] && are_parallel(chains[a], chains[b])) bundle.push_back(b);
     for (const std::size_t c : bundle) is_done[c] = true;
     const std::vector<std::size_t> left = without_pairs(chains, bundle);
-    if (left.size() < bundle.size()) removed.push_back(chains[a].points[chains[a].points.size() / 2]);
+    if (left.size() < bundle.size()) removed.points.push_back(chains[a].points[chains[a].points.size() / 2]);
+    for (const std::size_t c : bundle)
+      if (std::ranges::find(left, c) == left.end()) removed.length_voxels += length(chains[c].points);
     if (left.empty()) continue;
     for (const std::size_t c : left) chains[left[0]].labels.insert(chains[c].labels);
     merged.push_back(std::move(chains[left[0]]));
   }
   chains = std::move(merged);
-  return removed;
 }
 
 }  // namespace
 
-std::vector<Point> merge_chains(BlockChains& block, const std::function<JointKey(std::size_t)>& new_key) {
+RemovedCurves merge_chains(BlockChains& block, const std::function<JointKey(std::size_t)>& new_key) {
+  RemovedCurves removed;
   if (block.chains.size() > 1) join_near_misses(block, new_key);
-  std::erase_if(block.chains, is_small_loop);
-  if (block.chains.size() < 2) return {};
-  return merge_parallel(block.chains);
+  std::erase_if(block.chains, [&](const Chain& chain) {
+    const bool is_small = is_small_loop(chain);
+    if (is_small) removed.length_voxels += length(chain.points);
+    return is_small;
+  });
+  if (block.chains.size() > 1) merge_parallel(block.chains, removed);
+  return removed;
+}
+
+void append(const RemovedCurves& removed, const Voxel& block, Pieces& pieces) {
+  for (const Point& p : removed.points)
+    pieces.undecided.push_back({block, p, UndecidedPlace::Reason::kTooSmall});
+  pieces.removed_voxels += removed.length_voxels;
 }
 
 void append(const BlockChains& block, bool has_outside, Pieces& pieces) {

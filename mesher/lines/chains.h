@@ -46,10 +46,13 @@ struct BlockChains {
 /// - Chains with the same two joints that stay together become one, with the labels of all. Pairs of such
 ///   chains with the same labels are removed: between them is a layer thinner than the distance.
 /// - Where two chains come as close between their ends, both are split, and joined by a new joint.
-/// `new_key(n)` names the n-th new joint of the block. Returns a point of each removed pair.
-std::vector<Point> merge_chains(BlockChains& block, const std::function<JointKey(std::size_t)>& new_key);
+/// `new_key(n)` names the n-th new joint of the block. Returns a point of each removed pair, and the length
+/// of all removed chains.
+RemovedCurves merge_chains(BlockChains& block, const std::function<JointKey(std::size_t)>& new_key);
 
 /// Appends the chains and the joints that are emitted, with the background if `has_outside`.
 void append(const BlockChains& block, bool has_outside, Pieces& pieces);
+/// Appends places of removed chains, which are undecided, and their length.
+void append(const RemovedCurves& removed, const Voxel& block, Pieces& pieces);
 
 }  // namespace podm

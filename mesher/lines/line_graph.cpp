@@ -79,7 +79,7 @@ class Simplifier {
  public:
   explicit Simplifier(LineGraph& graph) : nodes_(graph.nodes), arcs_(graph.arcs) {}
 
-  std::vector<Point> operator()() {
+  RemovedCurves operator()() {
     for (int round = 0; round < kMostRounds; ++round) {
       bool has_changed = contract_short_arcs();
       has_changed |= remove_small_loops();
@@ -88,12 +88,14 @@ class Simplifier {
       if (!has_changed) break;
     }
     remove_short_closed_arcs();
+    add_contracted();
     for (GraphArc& arc : arcs_) remove_repeated(arc.points, kLeastSegment);
     return std::move(removed_);
   }
 
  private:
   bool contract_short_arcs();
+  void contract(Clusters& clusters);
   void move_nodes(Clusters& clusters);
   static void move_end(GraphArc& arc, std::size_t end, const Point& point);
   bool remove_small_loops();
@@ -101,6 +103,7 @@ class Simplifier {
   void merge_bundle(const std::vector<std::size_t>& bundle, std::vector<bool>& is_removed);
   bool remove_needless_nodes();
   void remove_short_closed_arcs();
+  void add_contracted();
   bool erase(const std::vector<bool>& is_removed);
   std::size_t end(std::size_t arc, std::size_t e) const {
     return static_cast<std::size_t>(arcs_[arc].ends[e]);
@@ -108,7 +111,14 @@ class Simplifier {
 
   std::vector<GraphNode>& nodes_;
   std::vector<GraphArc>& arcs_;
-  std::vector<Point> removed_;
+  // An arc, or a part of one, that became a part of a node.
+  struct Contracted {
+    std::size_t node;
+    double length;
+    std::vector<LabelIndex> labels;
+  };
+  std::vector<Contracted> contracted_;
+  RemovedCurves removed_;
 };
 
 bool Simplifier::erase(const std::vector<bool>& is_removed) {
@@ -134,8 +144,21 @@ bool Simplifier::contract_short_arcs() {
   Clusters clusters(nodes_);
   bool has_changed = false;
   for (const auto& [l, a] : shortest_first) has_changed |= clusters.unite(end(a, 0), end(a, 1));
-  if (has_changed) move_nodes(clusters);
+  if (has_changed) contract(clusters);
   return has_changed;
+}
+
+// An arc whose ends become one node is a loop from then on. What it loses of its length is noted here, and
+// the rest if the loop is removed.
+void Simplifier::contract(Clusters& clusters) {
+  std::vector<std::pair<std::size_t, double>> closing;
+  for (std::size_t a = 0; a < arcs_.size(); ++a)
+    if (!arcs_[a].is_closed() && arcs_[a].ends[0] != arcs_[a].ends[1] &&
+        clusters.find(end(a, 0)) == clusters.find(end(a, 1)))
+      closing.emplace_back(a, length(arcs_[a].points));
+  move_nodes(clusters);
+  for (const auto& [a, l] : closing)
+    contracted_.push_back({end(a, 0), std::max(l - length(arcs_[a].points), 0.0), arcs_[a].labels});
 }
 
 // Moves the end of an arc. The arc stays as it is outside the ball around the new place through the old one.
@@ -155,6 +178,7 @@ void Simplifier::move_end(GraphArc& arc, std::size_t end, const Point& point) {
 }
 
 void Simplifier::move_nodes(Clusters& clusters) {
+  for (Contracted& each : contracted_) each.node = clusters.find(each.node);
   std::vector<double> num_members(nodes_.size());
   std::vector<Point> sum(nodes_.size());
   std::vector<bool> has_changed(nodes_.size());
@@ -192,6 +216,7 @@ bool Simplifier::remove_small_loops() {
     if (arc.is_closed() || arc.ends[0] != arc.ends[1]) continue;
     is_removed[a] =
         arc.points.size() < 4 || greatest_distance_from(arc.points.front(), arc.points) <= kShortArc;
+    if (is_removed[a]) contracted_.push_back({end(a, 0), length(arc.points), arc.labels});
   }
   return erase(is_removed);
 }
@@ -228,8 +253,9 @@ void Simplifier::merge_bundle(const std::vector<std::size_t>& bundle, std::vecto
     if (twin == left.end()) {
       left.push_back(a);
     } else {
+      removed_.points.push_back(arcs_[a].points[arcs_[a].points.size() / 2]);
+      removed_.length_voxels += length(arcs_[a].points) + length(arcs_[*twin].points);
       left.erase(twin);
-      removed_.push_back(arcs_[a].points[arcs_[a].points.size() / 2]);
     }
   }
   if (left.empty()) return;
@@ -279,13 +305,26 @@ void Simplifier::remove_short_closed_arcs() {
   for (std::size_t a = 0; a < arcs_.size(); ++a) {
     if (!arcs_[a].is_closed() || length(arcs_[a].points) >= kShortLoop) continue;
     is_removed[a] = true;
-    removed_.push_back(arcs_[a].points.front());
+    removed_.points.push_back(arcs_[a].points.front());
+    removed_.length_voxels += length(arcs_[a].points);
   }
   erase(is_removed);
 }
 
+// Where an arc with all labels of a contracted one ends at its node, nothing is missing.
+void Simplifier::add_contracted() {
+  std::vector<std::vector<std::size_t>> arcs_at(nodes_.size());
+  for (std::size_t a = 0; a < arcs_.size(); ++a)
+    for (std::size_t e = 0; e < 2 && !arcs_[a].is_closed(); ++e) arcs_at[end(a, e)].push_back(a);
+  for (const Contracted& each : contracted_)
+    if (std::ranges::none_of(arcs_at[each.node], [&](std::size_t a) {
+          return std::ranges::includes(arcs_[a].labels, each.labels);
+        }))
+      removed_.length_voxels += each.length;
+}
+
 }  // namespace
 
-std::vector<Point> simplify(LineGraph& graph) { return Simplifier(graph)(); }
+RemovedCurves simplify(LineGraph& graph) { return Simplifier(graph)(); }
 
 }  // namespace podm

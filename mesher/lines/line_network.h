@@ -46,6 +46,8 @@ struct LineNetwork {
   std::vector<LineArc> arcs;
   std::vector<UndecidedPlace> undecided;  ///< at most one per block and reason, in the order of blocks
 
+  /// Length of curves that were contracted to nodes or removed, in voxels along each axis.
+  double removed_voxels = 0;
   bool is_whole = true;  ///< false: tracing ended early, and nothing is known
 
   bool is_empty() const { return arcs.empty(); }

@@ -60,12 +60,19 @@ struct Piece {
   std::uint32_t num_points;  // the ends' points included
 };
 
+/// Curves that are too short or too close to others to be kept.
+struct RemovedCurves {
+  std::vector<Point> points;  // one of each
+  double length_voxels = 0;   // of all
+};
+
 /// The pieces of some blocks, in their order.
 struct Pieces {
   std::vector<Piece> pieces;
   std::vector<Point> points;  // of all pieces
   std::vector<Joint> joints;
   std::vector<UndecidedPlace> undecided;  // points in index coordinates
+  double removed_voxels = 0;              // length of curves removed in blocks
 };
 
 }  // namespace podm

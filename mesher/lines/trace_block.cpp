@@ -243,12 +243,12 @@ void BlockTracer::trace(const Voxel& block, Pieces& pieces) {
   find_joints_on_faces();
   for (std::size_t h = 0; h < hubs_.size(); ++h) add_joint_at_hub(h);
   for_each_chain(triangles_, walked_, [&](const WalkedChain& walked) { add_chain(walked); });
-  const std::vector<Point> removed =
+  const RemovedCurves removed =
       merge_chains(chains_, [&](std::size_t n) { return keys_(JointKind::kInBlock, 0, block_, n); });
   append(chains_, false, pieces);
   using enum UndecidedPlace::Reason;
   for (const Point& p : unconfirmed_) pieces.undecided.push_back({block_, p, kUnconfirmed});
-  for (const Point& p : removed) pieces.undecided.push_back({block_, p, kTooSmall});
+  append(removed, block_, pieces);
   lattice_.rule_out();
   find_missed(pieces);
   for (const Triangle& t : triangles_)

@@ -57,6 +57,7 @@ class LineTracer {
   Affine to_mm_;
   std::vector<Pieces> parts_;
   std::vector<UndecidedPlace> undecided_;
+  double removed_voxels_ = 0;
 };
 
 // Calls work(task, thread, j begin, j end, k) for rows of blocks (j,k), until tracing is over.
@@ -229,6 +230,7 @@ LineNetwork LineTracer::network(LineGraph& graph) {
   undecided_.erase(end, undecided_.end());
   for (UndecidedPlace& u : undecided_) u.point = map(to_mm_, u.point);
   network.undecided = std::move(undecided_);
+  network.removed_voxels = removed_voxels_;
   return network;
 }
 
@@ -236,12 +238,15 @@ LineNetwork LineTracer::operator()() {
   if (options_.has_lines) trace_blocks();
   if (options_.is_box_flat) trace_sides();
   if (is_over()) return ended_early();
-  for (const Pieces& part : parts_)
+  for (const Pieces& part : parts_) {
     undecided_.insert(undecided_.end(), part.undecided.begin(), part.undecided.end());
+    removed_voxels_ += part.removed_voxels;
+  }
   LineGraph graph = join_pieces(parts_, threads_);
-  const std::vector<Point> removed = simplify(graph);
+  const RemovedCurves removed = simplify(graph);
   drop_decided(graph);
-  list_removed(removed);
+  list_removed(removed.points);
+  removed_voxels_ += removed.length_voxels;
   return network(graph);
 }
 

@@ -197,12 +197,12 @@ void SquareTracer::trace(const BoxSide& side, int p, int q, Pieces& pieces) {
   find_edges();
   find_joints();
   for_each_chain(edges_, walked_, [&](const WalkedChain& walked) { add_chain(walked); });
-  const std::vector<Point> removed = merge_chains(
+  const RemovedCurves removed = merge_chains(
       chains_, [&](std::size_t n) { return keys_(JointKind::kInSquare, side_.axis, lowest, n); });
   append(chains_, true, pieces);
   using enum UndecidedPlace::Reason;
   for (const Point& point : unconfirmed_) pieces.undecided.push_back({lowest, point, kUnconfirmed});
-  for (const Point& point : removed) pieces.undecided.push_back({lowest, point, kTooSmall});
+  append(removed, lowest, pieces);
   for (const Edge& e : edges_) index_of_edge_[4 * e.vertex + e.step] = -1;
   edges_.clear();
   triangles_.clear();

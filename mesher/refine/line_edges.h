@@ -19,8 +19,8 @@
 // worker. The table of arcs and the lists at nodes have their size before workers run.
 //
 // A split is written after the commit of its vertex, under the same locks. A worker that finds an edge
-// therefore finds its vertices in the mesh. Tests: Schedules (algorithms/tests/test_schedules.cpp), which
-// find that two locks are too few to look up edges; ci/race.sh finds the same with the thread sanitizer.
+// therefore finds its vertices in the mesh. Test: Schedules (algorithms/tests/test_schedules.cpp) find that
+// two locks are too few to look up edges.
 #pragma once
 
 #include <array>

@@ -44,7 +44,8 @@ class LineKeeper {
   /// cell's vertices. kDone: has_found() states if there is one.
   StepResult look_in(CellId c);
   bool has_found() const { return edge_.has_value(); }
-  /// Looks for an edge of a cell in which look_in() found none, around which labels of its line are missing.
+  /// Looks for an edge of a cell in which look_in() found none, around which fewer than three labels of its
+  /// line are.
   /// Returns a point of the isosurface where one of them begins, and a cell around the edge in conflict with
   /// it. If there is no such point, has_found() states if the edge is to be split.
   std::optional<SurfaceCenter> sample_of_missing(CellId c);
@@ -69,7 +70,10 @@ class LineKeeper {
     return std::any_of(tried_.begin(), tried_.end(), [&](const LineEdge& of) { return of.is_same(edge); });
   }
   std::optional<CellId> cell_of_region_with(const LineEdge& edge) const;
-  bool has_all_labels(const LineEdge& edge, CellId c);
+  const std::vector<LabelIndex>& labels_of_line(const LineEdge& edge) const {
+    return edges_.lines().network().arcs[edge.arc].labels;
+  }
+  bool has_three_labels(const LineEdge& edge, CellId c);
   std::optional<SurfaceCenter> sample_of_missing(const LineEdge& edge) const;
 
   const Mesh& mesh_;
@@ -158,7 +162,7 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(CellId c) {
   for (const VertexId v : vertices) {
     if (!is_on_line(v)) continue;
     edges_.for_each_edge_of(v, [&](const LineEdge& edge) {
-      if (sample || edge.first != v || !mesh_.cell(c).has(edge.last) || has_all_labels(edge, c)) return;
+      if (sample || edge.first != v || !mesh_.cell(c).has(edge.last) || has_three_labels(edge, c)) return;
       sample = sample_of_missing(edge);
       if (!sample && edges_.may_be_split(edge)) edge_ = edge;
     });
@@ -166,14 +170,16 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(CellId c) {
   return sample;
 }
 
-// Leaves the cells around the edge and their labels in around_edge_ and present_.
+// Leaves the cells around the edge in around_edge_, and labels of its line that they have in present_.
 template <class Locks>
-bool LineKeeper<Locks>::has_all_labels(const LineEdge& edge, CellId c) {
+bool LineKeeper<Locks>::has_three_labels(const LineEdge& edge, CellId c) {
+  const std::vector<LabelIndex>& wanted = labels_of_line(edge);
   present_ = {};
   around_edge_.clear();
   find_around_edge(mesh_, c, edge.first, edge.last, [&](CellId each) {
     around_edge_.push_back(each);
-    if (present_.size() < 3) present_.insert(rules_.label_of(each));
+    const LabelIndex label = rules_.label_of(each);
+    if (present_.size() < 3 && std::ranges::binary_search(wanted, label)) present_.insert(label);
     return false;
   });
   return present_.size() >= 3;
@@ -184,7 +190,7 @@ bool LineKeeper<Locks>::has_all_labels(const LineEdge& edge, CellId c) {
 // edge is too far from the line.
 template <class Locks>
 std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(const LineEdge& edge) const {
-  const std::vector<LabelIndex>& wanted = edges_.lines().network().arcs[edge.arc].labels;
+  const std::vector<LabelIndex>& wanted = labels_of_line(edge);
   const auto is_missing = [&](LabelIndex label) {
     return !present_.contains(label) && std::binary_search(wanted.begin(), wanted.end(), label);
   };

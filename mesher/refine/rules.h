@@ -72,9 +72,9 @@
 // rules, and are never removed. Lines are sampled before R1. Let f = min(s, delta of lines) / 4.
 //   R0  split an edge of a line, at the middle of its arc, (i) in place of a point of another rule in its
 //       diametral ball; (ii) if another vertex of a cell with the edge is in that ball; (iii) if fewer than
-//       three labels are around it. Before (iii) insert the point where a side of the edge's Voronoi polygon
-//       enters a missing label, if it is f or more from all vertices. An edge with an arc shorter than f is
-//       not split. R6 applies after R0, too
+//       three labels of its line are around it. Before (iii) insert the point where a side of the edge's
+//       Voronoi polygon enters a missing label, if it is f or more from all vertices. An edge with an arc
+//       shorter than f is not split. R6 applies after R0, too
 //   R6  removes no vertex that is farther from z than twice the distance d of the nearest isosurface vertex
 //       from z: samples near lines may be at a spacing down to f, and R4 would insert again what R6 removed
 //   R3  near lines (near_lines.h) applies to angles of at most 20.7 degrees: the facet's circumradius is then

@@ -9,7 +9,6 @@
 
 #include "image/working_frame.h"
 #include "io/lines_of_facets.h"
-#include "lines/line_graph.h"
 #include "refine/line_survey.h"
 
 namespace podm {
@@ -133,10 +132,11 @@ class LineExtractor {
   MeshLines out_;
 };
 
-// Null if the edge is kept. Two arcs may join the same vertices: the edge is then the first one's.
+// Null if the edge is kept. Two arcs may join the same vertices: the edge then has the labels of both, or it
+// is the first one's.
 const char* LineExtractor::why_left_out(const LineEdge& edge) const {
-  if (kept_.contains(key_of(edge))) return kBesideOther;
   if (std::ranges::includes(survey_.around(edge).labels, network_.arcs[edge.arc].labels)) return nullptr;
+  if (kept_.contains(key_of(edge))) return kBesideOther;
   return vertices_.has_another_in_ball_of(edge) ? kBesideOther : kNoEdge;
 }
 
@@ -168,25 +168,21 @@ void LineExtractor::add(std::size_t arc) {
   if (!has_edge) leave_out(arc, 0, length_mm, kTooSmall);
 }
 
-// The labels around the edge name its line: others may meet there beside those of the arc.
+// The labels around the edge name its line: others may meet there beside those of the arc. Each edge is
+// listed once.
 void LineExtractor::keep(const LineEdge& edge) {
-  kept_.insert(key_of(edge));
   report_.kept_mm += edges_.length(edge);
+  if (!kept_.insert(key_of(edge)).second) return;
   out_.edges.push_back({edge.first, edge.last});
   out_.line_of_edge.push_back(line_of(survey_.around(edge).labels));
 }
 
-// Four arcs end at a node where four labels meet. For each arc that tracing contracts into a node, two more
-// arcs end there. An undecided place may hide a curve of a voxel.
+// An undecided place may hide a curve of a voxel. The lengths of curves that are too small are known.
 double LineExtractor::untraced_mm() const {
-  std::vector<std::size_t> ends(network_.nodes.size());
-  for (const LineArc& arc : network_.arcs)
-    if (!arc.is_closed())
-      for (const std::int32_t node : {arc.first_node, arc.last_node}) ++ends[static_cast<std::size_t>(node)];
-  double voxels = static_cast<double>(network_.undecided.size());
-  for (const std::size_t count : ends)
-    voxels += kShortArc * (std::max(0.5 * static_cast<double>(count), 2.0) - 2);
-  return voxels * std::ranges::max(image_.spacing);
+  const auto num_unknown = std::ranges::count_if(network_.undecided, [](const UndecidedPlace& place) {
+    return place.reason != UndecidedPlace::Reason::kTooSmall;
+  });
+  return (static_cast<double>(num_unknown) + network_.removed_voxels) * std::ranges::max(image_.spacing);
 }
 
 void LineExtractor::add(const UndecidedPlace& place) {
