@@ -104,7 +104,7 @@ def record(**changes):
 
 class Judge(unittest.TestCase):
     def judge(self, exit_code, limits=(), **changes):
-        stress.judge(types.SimpleNamespace(limits=set(limits)), record(**changes),
+        stress.judge(types.SimpleNamespace(limits=set(limits), options=[]), record(**changes),
                      types.SimpleNamespace(returncode=exit_code, stderr=""))
 
     def assert_fault(self, exit_code, limits=(), **changes):

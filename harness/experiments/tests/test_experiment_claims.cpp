@@ -208,6 +208,29 @@ const std::map<std::string, SetValue> kSetters = {
      [](Row& row, double value) {
        mesh_of(row).verdicts = {{"dihedral", value == 1 ? Proof::kPass : Proof::kNotRun}};
      }},
+    {"box_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"box", value == 1 ? Proof::kPass : Proof::kNotRun}};
+     }},
+    {"topology_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"topology", value == 1 ? Proof::kPass : Proof::kFail}};
+     }},
+    {"lines_share_kept", [](Row& row, double value) { mesh_of(row).lines.emplace().share_kept = value; }},
+    {"lines_share_near",
+     [](Row& row, double value) {
+       LineDistancesRecord& lines = mesh_of(row).line_distances.emplace();
+       lines.image_to_mesh.share_near = 1;
+       lines.mesh_to_image.share_near = value;
+     }},
+    {"lines_share_found",
+     [](Row& row, double value) { mesh_of(row).line_distances.emplace().image_to_mesh.share_near = value; }},
+    {"box_ulps_off", [](Row& row, double value) { mesh_of(row).box_ulps_off = value; }},
+    {"interface_distance_mm", [](Row& row, double value) { mesh_of(row).interface_distance_mm = value; }},
+    {"topology_differences",
+     [](Row& row, double value) {
+       mesh_of(row).thin_layers.emplace().differences.resize(static_cast<std::size_t>(std::ceil(value)));
+     }},
     {"radius_edge_proved",
      [](Row& row, double value) {
        mesh_of(row).verdicts = {{"radius_edge", value == 1 ? Proof::kPass : Proof::kFail}};
