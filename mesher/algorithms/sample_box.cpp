@@ -54,8 +54,7 @@ class BoxSampler {
   void insert(const Point& p, SideMask sides) {
     const std::optional<SurfacePoint> z = isosurface_.on_curve_of_box(p, sides);
     if (!z) return;
-    while (!mesh_.cell(last_).is_alive()) last_ = (last_ + 1) % mesh_.cell_bound();
-    last_ = cell_with(mesh_, *z, last_);
+    last_ = cell_with(mesh_, *z, living_cell(mesh_, last_));
     if (worker_.insert_sample(*z, last_, kLeastSpacing * delta_at(*z))) last_ = worker_.created().front();
   }
 

@@ -65,7 +65,6 @@ class LineSampler {
   void note_changed(const std::vector<CellId>& cells) {
     for (const CellId c : cells) changed_.push_back({c, mesh_.stamp(c)});
   }
-  CellId living_cell();
 
   StopControl& stop_;
   CellMeter meter_;
@@ -81,11 +80,6 @@ class LineSampler {
   std::vector<CellId> ball_;  // scratch
 };
 
-CellId LineSampler::living_cell() {
-  while (!mesh_.cell(last_).is_alive()) last_ = (last_ + 1) % mesh_.cell_bound();
-  return last_;
-}
-
 // One look at the limits takes much less time than an insertion or a ball.
 bool LineSampler::is_over() {
   meter_.report(worker_, stop_);
@@ -97,7 +91,7 @@ bool LineSampler::is_over() {
 VertexId LineSampler::insert(const LinePoint& at) {
   std::optional<Point> p = at.point;
   if (!at.is_exact) p = rules_.settled(at.point, edges_.delta_mm());
-  const VertexId v = p ? worker_.insert_on_line(*p, living_cell()) : kNoVertex;
+  const VertexId v = p ? worker_.insert_on_line(*p, living_cell(mesh_, last_)) : kNoVertex;
   if (v == kNoVertex) return v;
   last_ = worker_.created().front();
   note_changed(worker_.created());
@@ -152,7 +146,7 @@ bool LineSampler::is_current(const LineEdge& edge) const {
 
 // Leaves the cells around v in ball_.
 void LineSampler::find_ball(VertexId v) {
-  last_ = cell_with(mesh_, mesh_.point(v), living_cell());
+  last_ = cell_with(mesh_, mesh_.point(v), living_cell(mesh_, last_));
   find_around_vertex(mesh_, v, last_, ball_);
 }
 

@@ -17,6 +17,12 @@ CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous)
 /// `from` must be alive.
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from);
 
+/// Returns `from` if it is alive, otherwise the next living cell.
+inline CellId living_cell(const Mesh& mesh, CellId from) {
+  while (!mesh.cell(from).is_alive()) from = (from + 1) % mesh.cell_bound();
+  return from;
+}
+
 /// Leaves the cells around v in `ball`, `c` first, which is one of them. It marks them meanwhile, so that no
 /// worker may run.
 void find_around_vertex(Mesh& mesh, VertexId v, CellId c, std::vector<CellId>& ball);

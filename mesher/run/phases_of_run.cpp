@@ -8,7 +8,6 @@
 #include "algorithms/memory_model.h"
 #include "algorithms/mend_topology.h"
 #include "image/foreground.h"
-#include "lines/trace_lines.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
 #include "prediction/cost_model.h"
@@ -82,10 +81,7 @@ void PhasesOfRun::transform(MeshingReport& report, const MakeIsosurface& make) {
   if (options_.lines.are_kept) trace(weights, report);
   announce("transform", 0, 0);
   const double start_s = seconds_();
-  if (image_.is_box_flat)
-    box_curves_ = trace_lines(
-        image_, weights.get(),
-        {.is_box_flat = true, .threads = loop_threads_, .most_bytes = memory_of_run(options_.limits)});
+  if (image_.is_box_flat) box_curves_ = traced(weights.get(), {.is_box_flat = true});
   isosurface_ = make(std::move(weights));
   object_ = foreground_bounds(image_, loop_threads_);
   asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
@@ -115,18 +111,20 @@ std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) c
 void PhasesOfRun::trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report) {
   announce("lines", 0, 0);
   const double start_s = seconds_();
+  lines_ = std::make_unique<const Lines>(traced(weights.get(), {.has_lines = true}), image_, weights);
+  report.phases_s["trace"] = seconds_() - start_s;
+}
+
+LineNetwork PhasesOfRun::traced(const VoxelWeights* weights, LineOptions options) const {
   StopControl stop(
       {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
-  const LineOptions traced{.has_lines = true,
-                           .threads = loop_threads_,
-                           .is_over =
-                               [&] {
-                                 stop.check_limits();
-                                 return stop.is_over();
-                               },
-                           .most_bytes = memory_of_run(options_.limits)};
-  lines_ = std::make_unique<const Lines>(trace_lines(image_, weights.get(), traced), image_, weights);
-  report.phases_s["trace"] = seconds_() - start_s;
+  options.threads = loop_threads_;
+  options.is_over = [&] {
+    stop.check_limits();
+    return stop.is_over();
+  };
+  options.most_bytes = memory_of_run(options_.limits);
+  return trace_lines(image_, weights, options);
 }
 
 void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {

@@ -11,6 +11,7 @@
 #include "algorithms/podm.h"
 #include "algorithms/team_of_run.h"
 #include "isosurface/isosurface.h"
+#include "lines/trace_lines.h"
 #include "podm/mesh_image.h"
 
 namespace podm {
@@ -67,6 +68,7 @@ class PhasesOfRun {
   std::optional<DihedralBounds> dihedral_bounds() const;
   std::shared_ptr<const VoxelWeights> smooth(MeshingReport& report) const;
   void trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report);
+  LineNetwork traced(const VoxelWeights* weights, LineOptions options) const;
   void announce(const char* phase, double fraction, std::uint64_t cells) const;
   void simulate(const Refinement& refinement, MeshingReport& report) const;
 

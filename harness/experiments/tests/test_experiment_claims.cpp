@@ -39,6 +39,8 @@ void set_unproved(Row& row, double number) {
     verdicts["claim " + std::to_string(i)] = i == 0 ? Proof::kFail : Proof::kNotRun;
 }
 
+void set_proof(Row& row, const std::string& claim, Proof proof) { mesh_of(row).verdicts = {{claim, proof}}; }
+
 void set_misses_per_insertion(Row& row, double value) {
   const double size = asked_of(row).at("target_elements");
   const bool is_likwid = asked_of(row).value("counters", "").starts_with("likwid");
@@ -197,25 +199,15 @@ const std::map<std::string, SetValue> kSetters = {
      }},
     {"unproved_claims", set_unproved},
     {"conformity_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"conformity", value == 1 ? Proof::kPass : Proof::kFail}};
-     }},
+     [](Row& row, double value) { set_proof(row, "conformity", value == 1 ? Proof::kPass : Proof::kFail); }},
     {"fidelity_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"fidelity", value == 1 ? Proof::kPass : Proof::kNotRun}};
-     }},
+     [](Row& row, double value) { set_proof(row, "fidelity", value == 1 ? Proof::kPass : Proof::kNotRun); }},
     {"dihedral_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"dihedral", value == 1 ? Proof::kPass : Proof::kNotRun}};
-     }},
+     [](Row& row, double value) { set_proof(row, "dihedral", value == 1 ? Proof::kPass : Proof::kNotRun); }},
     {"box_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"box", value == 1 ? Proof::kPass : Proof::kNotRun}};
-     }},
+     [](Row& row, double value) { set_proof(row, "box", value == 1 ? Proof::kPass : Proof::kNotRun); }},
     {"topology_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"topology", value == 1 ? Proof::kPass : Proof::kFail}};
-     }},
+     [](Row& row, double value) { set_proof(row, "topology", value == 1 ? Proof::kPass : Proof::kFail); }},
     {"lines_share_kept", [](Row& row, double value) { mesh_of(row).lines.emplace().share_kept = value; }},
     {"lines_share_near",
      [](Row& row, double value) {
@@ -232,12 +224,10 @@ const std::map<std::string, SetValue> kSetters = {
        mesh_of(row).thin_layers.emplace().differences.resize(static_cast<std::size_t>(std::ceil(value)));
      }},
     {"radius_edge_proved",
-     [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"radius_edge", value == 1 ? Proof::kPass : Proof::kFail}};
-     }},
+     [](Row& row, double value) { set_proof(row, "radius_edge", value == 1 ? Proof::kPass : Proof::kFail); }},
     {"boundary_angles_proved",
      [](Row& row, double value) {
-       mesh_of(row).verdicts = {{"boundary_angles", value == 1 ? Proof::kPass : Proof::kFail}};
+       set_proof(row, "boundary_angles", value == 1 ? Proof::kPass : Proof::kFail);
      }},
     {"topology_as_image",
      [](Row& row, double value) {
