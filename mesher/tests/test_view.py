@@ -22,8 +22,9 @@ def setUpModule():
 
 
 def processes_of_session(session):
-    """Returns the running processes of the session, without zombies."""
-    listing = subprocess.run(["ps", "-o", "stat=,comm=", "-s", str(session)], capture_output=True, text=True).stdout
+    """Returns state, processor seconds and name of the running processes of the session, without zombies."""
+    listing = subprocess.run(["ps", "-o", "stat=,cputimes=,comm=", "-s", str(session)], capture_output=True,
+                             text=True).stdout
     return [line for line in listing.splitlines() if not line.startswith("Z")]
 
 
@@ -67,7 +68,7 @@ class View(PodmTestCase):
             self.assertEqual(end_of(process, signal.SIGTERM).code, -signal.SIGTERM)
             ended_s = time.monotonic()
             while left := processes_of_session(process.pid):
-                self.assertLess(time.monotonic() - ended_s, 5, left)
+                self.assertLess(time.monotonic() - ended_s, 60, left)  # a busy machine took more than 5 s
                 time.sleep(0.05)
             self.assertEqual(self.files(), before)
 
