@@ -46,7 +46,10 @@ struct Mesh {
   std::string cell_label_array;                         ///< its name in the file; empty: none
   std::vector<std::array<VertexId, 3>> facets;          ///< triangles listed by the file; may be empty
   std::vector<std::array<LabelValue, 2>> facet_labels;  ///< one per facet, or empty
-  std::map<LabelValue, std::string> label_names;        ///< as far as the file names them
+  /// One per facet, or empty: its side of a flat box as the file names it, 1 to 6 for i-, i+, j-, j+, k-, k+,
+  /// otherwise 0.
+  std::vector<std::uint8_t> facet_sides;
+  std::map<LabelValue, std::string> label_names;                    ///< as far as the file names them
   std::map<LabelValue, std::array<std::uint8_t, 3>> label_colours;  ///< red, green, blue, of those with one
   std::map<std::string, std::size_t> other_cells;  ///< cells that are neither tetrahedra nor triangles
   Space space = Space::kUnstated;

@@ -1,5 +1,6 @@
 """Every mesh format: podm-verify proves what podm writes, and podm convert converts one format to another."""
 
+import collections
 import json
 import re
 import shutil
@@ -60,6 +61,58 @@ class FormatsTest(PodmTestCase):
                 self.assertNotIn("lines in the file", process.stderr)
                 self.assertEqual((self.folder / "back.vtu").read_bytes(), cells.read_bytes())
                 self.assertEqual((self.folder / "back_lines.vtu").read_bytes(), lines)
+
+    def flat_box(self, name, *options):
+        path = self.folder / name
+        self.assert_exit(run_podm("mesh", "phantom:crystal@16", "--radius", 8, "--delta", 4, "--box", "flat",
+                                  "--quiet", "-o", path, *options), 0)
+        return path
+
+    def test_what_every_format_holds_of_a_flat_box_is_proved(self):
+        for name, *options in [("a" + extension,) for extension in (*LOSSLESS, ".inp")] + [
+                ("b.msh", "--gmsh-version", "2.2")]:
+            with self.subTest(name=name, options=options):
+                record = self.folder / f"{name}.jsonl"
+                self.flat_box(name, "--verify", "--record", record, *options)
+                self.assertEqual(self.read_record(record)["verdicts"]["box"], "pass")
+
+    def test_sides_of_a_flat_box_come_back_to_the_bit_from_every_format(self):
+        cells = self.flat_box("a.vtu")
+        facets = cells.with_name("a_facets.vtu").read_bytes()
+        for name, *options in [("b" + extension,) for extension in LOSSLESS] + [("c.msh", "--gmsh-version", "2.2")]:
+            with self.subTest(name=name, options=options):
+                self.convert(cells, name, *options)
+                process = self.convert(self.folder / name, "back.vtu")
+                self.assertNotIn("flat box", process.stderr)
+                self.assertEqual((self.folder / "back.vtu").read_bytes(), cells.read_bytes())
+                self.assertEqual((self.folder / "back_facets.vtu").read_bytes(), facets)
+
+    def test_sides_of_a_flat_box_come_back_from_abaqus(self):
+        """Its coordinates are rounded, so that the files are not the same to the bit."""
+        cells = self.flat_box("a.vtu")
+        self.convert(cells, "a.inp")
+        self.convert(cells, "before.mesh")
+        self.assertNotIn("flat box", self.convert(self.folder / "a.inp", "after.mesh").stderr)
+        before, after = (collections.Counter(self.references(self.folder / name))
+                         for name in ("before.mesh", "after.mesh"))
+        self.assertEqual(before, after)
+        self.assertEqual({name[-6:] for name in before if " box " in name},
+                         {"box i-", "box i+", "box j-", "box j+", "box k-", "box k+"})
+
+    @staticmethod
+    def references(path):
+        """Returns the name of the reference of each triangle of a Medit file."""
+        lines = path.read_text().splitlines()
+        names = {line.split()[2]: line.split(" ", 5)[5] for line in lines if line.startswith("# pair ")}
+        first = lines.index("Triangles") + 2
+        return [names[line.split()[-1]] for line in lines[first:first + int(lines[first - 1])]]
+
+    def test_a_flat_box_without_the_facets_of_its_sides_is_reported(self):
+        cells = self.flat_box("a.vtu")
+        cells.with_name("a_facets.vtu").unlink()
+        self.assertIn("names no facets of its sides", self.convert(cells, "b.msh").stderr)
+        self.assertNotIn(b'"box i-"', (self.folder / "b.msh").read_bytes())
+        self.assertIn(b"promise box flat", (self.folder / "b.msh").read_bytes())
 
     def test_abaqus_keeps_all_but_what_it_says(self):
         process = self.convert(self.mesh("a.vtu", "--merge", "1,2=big sphere"), "a.inp")

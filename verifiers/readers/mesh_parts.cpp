@@ -132,23 +132,52 @@ bool read_note(const MeshFile& file, const std::string& place, std::string_view 
   return true;
 }
 
-void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, LabelPairs& pairs) {
+std::uint8_t side_of_set(std::string_view name) {
+  constexpr std::array<std::string_view, 6> kNames{"box i-", "box i+", "box j-",
+                                                   "box j+", "box k-", "box k+"};
+  const auto* const found = std::find(kNames.begin(), kNames.end(), name);
+  return found == kNames.end() ? std::uint8_t{0} : static_cast<std::uint8_t>(found - kNames.begin() + 1);
+}
+
+std::uint8_t side_of_pair(std::string_view name) {
+  constexpr std::string_view kOutside = "|outside ";
+  const std::size_t outside = name.rfind(kOutside);
+  return outside == std::string_view::npos ? std::uint8_t{0}
+                                           : side_of_set(name.substr(outside + kOutside.size()));
+}
+
+void mark_facet_sides(const std::vector<CellSide>& facets,
+                      const std::vector<std::pair<CellSide, std::uint8_t>>& sides, Mesh& mesh) {
+  if (sides.empty()) return;
+  const std::map<CellSide, std::uint8_t> side_of(sides.begin(), sides.end());
+  mesh.facet_sides.assign(mesh.facets.size(), 0);
+  for (std::size_t i = 0; i < facets.size(); ++i)
+    if (const auto side = side_of.find(facets[i]); side != side_of.end()) mesh.facet_sides[i] = side->second;
+}
+
+bool is_kept_cell_array(std::string_view name) {
+  return name == "label_a" || name == "label_b" || name == kSideArray || label_array_rank(name);
+}
+
+void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, FacetGroups& groups) {
   const auto note = after_prefix(text, " ");
   if (!note || read_note(file, "a comment", *note, mesh)) return;
   if (auto label = after_prefix(*note, "label ")) {
     if (const auto value = take_integer(*label)) mesh.label_names[*value] = *label;
   } else if (auto facets = after_prefix(*note, "pair ")) {
     const auto number = take_integer(*facets);
-    if (const auto labels = take_pair(*facets); number && labels) pairs[*number] = *labels;
+    if (const auto labels = take_pair(*facets); number && labels)
+      groups[*number] = {*labels, side_of_pair(*facets)};
   }
 }
 
 void label_facets(const MeshFile& file, const std::string& place, const char* what,
-                  const std::vector<std::int64_t>& numbers, const LabelPairs& pairs, Mesh& mesh) {
+                  const std::vector<std::int64_t>& numbers, const FacetGroups& groups, Mesh& mesh) {
   for (const std::int64_t number : numbers) {
-    const auto pair = pairs.find(number);
-    if (pair == pairs.end()) file.refuse(place, fmt::format("{} {} has no line 'pair'", what, number));
-    mesh.facet_labels.push_back(pair->second);
+    const auto group = groups.find(number);
+    if (group == groups.end()) file.refuse(place, fmt::format("{} {} has no line 'pair'", what, number));
+    mesh.facet_labels.push_back(group->second.labels);
+    mesh.facet_sides.push_back(group->second.side);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh.h"
@@ -45,14 +46,37 @@ std::optional<std::size_t> label_array_rank(std::string_view name);
 bool read_note(const MeshFile& file, const std::string& place, std::string_view note, Mesh& mesh,
                char blank = ' ');
 
-/// The labels on both sides of facets, by a number that the file gives to the facets.
-using LabelPairs = std::map<std::int64_t, std::array<LabelValue, 2>>;
-/// Reads a comment of podm: a blank and a note, "label 1 liver", or "pair 7 0 1" of the facets of number 7.
-void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, LabelPairs& pairs);
-/// Appends the labels of facets by their numbers. Throws InputError at `place` if a number, called `what`,
-/// has no pair.
+/// The number of a side of a flat box in Mesh::facet_sides, by the name of its set, "box i-"; 0 for other
+/// names.
+std::uint8_t side_of_set(std::string_view name);
+/// The same by the name of the facets of a pair of labels on a side: "liver|outside box i-".
+std::uint8_t side_of_pair(std::string_view name);
+
+/// The labels and the side that podm states for facets to which the file gives a number.
+struct FacetGroup {
+  std::array<LabelValue, 2> labels{};
+  std::uint8_t side = 0;  ///< as in Mesh::facet_sides
+};
+using FacetGroups = std::map<std::int64_t, FacetGroup>;
+/// Reads a comment of podm: a blank and a note, "label 1 liver", or "pair 7 0 1 liver|outside" of the facets
+/// of number 7.
+void read_comment(const MeshFile& file, std::string_view text, Mesh& mesh, FacetGroups& groups);
+/// Appends the labels and sides of facets by their numbers. Throws InputError at `place` if a number, called
+/// `what`, has no pair.
 void label_facets(const MeshFile& file, const std::string& place, const char* what,
-                  const std::vector<std::int64_t>& numbers, const LabelPairs& pairs, Mesh& mesh);
+                  const std::vector<std::int64_t>& numbers, const FacetGroups& groups, Mesh& mesh);
+
+/// A side of a cell, as cell * 4 + its number there.
+using CellSide = std::uint64_t;
+/// Sets the sides of a flat box of the facets that are given as sides of cells, one per facet. Others of the
+/// `sides` are ignored.
+void mark_facet_sides(const std::vector<CellSide>& facets,
+                      const std::vector<std::pair<CellSide, std::uint8_t>>& sides, Mesh& mesh);
+
+/// The array in which podm writes the sides of facets.
+inline constexpr const char* kSideArray = "box_side";
+/// True if readers of VTK's formats keep the cell array: podm's arrays of facets and arrays of labels.
+bool is_kept_cell_array(std::string_view name);
 
 /// Returns the word with its ASCII letters in capitals.
 std::string upper(std::string_view word);

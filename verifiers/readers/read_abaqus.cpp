@@ -85,6 +85,7 @@ class AbaqusReader {
     std::uint64_t element;
     std::uint32_t number;  // counted from 0
     std::array<LabelValue, 2> labels;
+    std::uint8_t box_side;  // above 0: the facet is listed elsewhere, too
   };
 
   // Goes to the next line that is neither empty nor a comment.
@@ -156,13 +157,22 @@ class AbaqusReader {
     if (set_number_ == set_names_.size()) set_names_.push_back(set_);
   }
 
-  // Only surfaces that podm's comments pair with labels are read.
+  // Only surfaces that podm's comments pair with labels are read, and those of the sides of a flat box.
   void begin_surface() {
     if (pair_of_surface_.empty()) return;
-    const auto pair = pair_of_surface_.find(upper(need_parameter("NAME")));
-    if (pair == pair_of_surface_.end()) return;
-    labels_of_side_ = pair->second;
+    const std::string name = upper(need_parameter("NAME"));
+    const auto pair = pair_of_surface_.find(name);
+    box_side_ = pair == pair_of_surface_.end() ? side_of_surface(name) : std::uint8_t{0};
+    if (pair == pair_of_surface_.end() && box_side_ == 0) return;
+    if (box_side_ == 0) labels_of_side_ = pair->second;
     section_ = Section::kSurface;
+  }
+
+  // "BOX_I-", and "BOX_I_" for i+, as names have no plus
+  static std::uint8_t side_of_surface(const std::string& name) {
+    if (name.size() != 6 || !name.starts_with("BOX_")) return 0;
+    return side_of_set(std::string("box ") + static_cast<char>(name[4] - 'A' + 'a') +
+                       (name[5] == '_' ? '+' : name[5]));
   }
 
   void read_data() {
@@ -215,7 +225,7 @@ class AbaqusReader {
     const std::string_view side = take_field(line_);
     if (side.size() != 2 || (side[0] != 'S' && side[0] != 's') || side[1] < '1' || side[1] > '4')
       cursor_.refuse_word("is not a side of a tetrahedron, S1 to S4", side);
-    sides_.push_back({element, static_cast<std::uint32_t>(side[1] - '1'), labels_of_side_});
+    sides_.push_back({element, static_cast<std::uint32_t>(side[1] - '1'), labels_of_side_, box_side_});
   }
 
   template <std::size_t N>
@@ -233,15 +243,24 @@ class AbaqusReader {
     for (const auto& nodes : triangles_) mesh_.facets.push_back(vertices_of(nodes));
     if (!triangles_.empty()) return;  // triangles and sides would be two lists of facets
     constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    std::vector<CellSide> facets;
+    std::vector<std::pair<CellSide, std::uint8_t>> sides;
     for (const Side& side : sides_) {
       const VertexId cell = cell_numbers_.find(side.element);
       if (cell == kNone)
         file_.refuse("*SURFACE", fmt::format("no tetrahedron has the number {}", side.element));
+      const CellSide cell_side = 4 * CellSide{cell} + side.number;
+      if (side.box_side > 0) {
+        sides.emplace_back(cell_side, side.box_side);
+        continue;
+      }
+      facets.push_back(cell_side);
       const auto& [i, j, k] = kOutward[side.number];
       const auto& corners = mesh_.cells[cell];
       mesh_.facets.push_back({corners[i], corners[j], corners[k]});
       mesh_.facet_labels.push_back(side.labels);
     }
+    mark_facet_sides(facets, sides, mesh_);
   }
 
   // If any cell has no set, the file has no labels.
@@ -276,6 +295,7 @@ class AbaqusReader {
   std::string set_;
   std::size_t set_number_ = 0;
   std::array<LabelValue, 2> labels_of_side_{};
+  std::uint8_t box_side_ = 0;
   bool has_nodes_ = false;
   ItemNumbers node_numbers_, cell_numbers_;
   std::vector<std::array<std::uint64_t, 4>> cells_;  // by node numbers

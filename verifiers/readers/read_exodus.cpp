@@ -136,32 +136,48 @@ class ExodusReader {
     if (pair_of_set_.empty()) return;
     const std::uint64_t num_sets = document_.size_of("num_side_sets");
     const NumberArray ids = document_.numbers("ss_prop1", num_sets);
+    const std::vector<std::string> names = document_.texts("ss_names");
+    std::vector<CellSide> facets;
+    std::vector<std::pair<CellSide, std::uint8_t>> sides;
     for (std::size_t i = 0; i < num_sets; ++i) {
+      const std::uint8_t side = i < names.size() ? side_of_set(names[i]) : std::uint8_t{0};
+      if (side > 0)
+        for (const CellSide each : read_side_set(i + 1)) sides.emplace_back(each, side);
+      if (side > 0) continue;
       const auto pair = pair_of_set_.find(ids.integer(i).value_or(-1));
       if (pair == pair_of_set_.end())
         file_.refuse("info_records",
                      fmt::format("side set {} has no line 'pair'", ids.integer(i).value_or(-1)));
-      read_side_set(i + 1, pair->second);
+      for (const CellSide each : read_side_set(i + 1)) {
+        add_facet(each, pair->second);
+        facets.push_back(each);
+      }
     }
+    mark_facet_sides(facets, sides, mesh_);
   }
 
-  void read_side_set(std::size_t number, const std::array<LabelValue, 2>& labels) {
-    constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}};
+  std::vector<CellSide> read_side_set(std::size_t number) {
     const std::uint64_t count = document_.size_of(fmt::format("num_side_ss{}", number));
     const std::string list = fmt::format("elem_ss{}", number);
     const NumberArray elements = document_.numbers(list, count);
     const NumberArray sides = document_.numbers(fmt::format("side_ss{}", number), count);
+    std::vector<CellSide> all;
     for (std::size_t i = 0; i < count; ++i) {
       const std::int64_t side = sides.integer(i).value_or(0);
       const std::size_t cell = cell_of(elements.integer(i).value_or(0));
       if (side < 1 || side > 4 || cell >= mesh_.cells.size())
         file_.refuse(fmt::format("variable '{}'", list),
                      fmt::format("entry {} is not a side of a tetrahedron", i));
-      const auto& corners = mesh_.cells[cell];
-      const auto& [a, b, c] = kOutward[static_cast<std::size_t>(side - 1)];
-      mesh_.facets.push_back({corners[a], corners[b], corners[c]});
-      mesh_.facet_labels.push_back(labels);
+      all.push_back(4 * CellSide{cell} + static_cast<CellSide>(side - 1));
     }
+    return all;
+  }
+  void add_facet(CellSide side, const std::array<LabelValue, 2>& labels) {
+    constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}};
+    const auto& corners = mesh_.cells[side / 4];
+    const auto& [a, b, c] = kOutward[side % 4];
+    mesh_.facets.push_back({corners[a], corners[b], corners[c]});
+    mesh_.facet_labels.push_back(labels);
   }
 
   // Returns kNone for an element that is no tetrahedron.
@@ -181,7 +197,7 @@ class ExodusReader {
   Mesh mesh_;
   std::vector<Block> blocks_;
   std::map<std::int64_t, LabelValue> label_of_block_;  // from podm's information records
-  LabelPairs pair_of_set_;
+  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_set_;
 };
 
 }  // namespace

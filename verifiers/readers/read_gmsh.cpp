@@ -2,7 +2,8 @@
 // Format: Gmsh reference manual, "MSH file format".
 //
 // podm's comments give the space and the label of each physical group of volumes. The labels on the two sides
-// of a facet come from comments in 2.2, and in 4.1 from the signs of the surfaces that bound a volume.
+// of a facet come from comments in 2.2, and in 4.1 from the signs of the surfaces that bound a volume. The
+// names of physical groups state which facets are on the sides of a flat box.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -117,7 +118,7 @@ class GmshReader {
       } else if (auto pair = after_prefix(line, "pair ")) {
         const auto labels = take_pair(*pair);
         const auto group = integer_after(*pair, "physical surface ");
-        if (labels && group) pair_of_surface_[*group] = *labels;
+        if (labels && group) surface_groups_[*group].labels = *labels;
       }
     }
   }
@@ -130,7 +131,10 @@ class GmshReader {
       std::string_view name = cursor_.rest_of_line();
       const std::size_t open = name.find('"'), close = name.rfind('"');
       if (open == close) cursor_.refuse("the name of a physical group is not in quotes");
-      if (dimension == 3) group_names_[group] = name.substr(open + 1, close - open - 1);
+      name = name.substr(open + 1, close - open - 1);
+      if (dimension == 3) group_names_[group] = name;
+      const std::uint8_t side = std::max(side_of_set(name), side_of_pair(name));
+      if (dimension == 2 && side > 0) side_of_group_[group] = side;
     }
   }
 
@@ -182,6 +186,7 @@ class GmshReader {
     for (std::size_t i = 0, n = count("the number of physical groups", 2); i < n; ++i) {
       const std::int64_t next = integer("a physical group");
       if (i == 0) group = next < 0 ? -next : next;
+      if (dimension == 2) groups_of_surface_.emplace(tag, next < 0 ? -next : next);
     }
     if (group != 0) groups_[{dimension, tag}] = group;
     if (dimension == 0) return;
@@ -317,8 +322,9 @@ class GmshReader {
   // In podm's files the normal of a facet points from the second label to the first. The outside of all
   // volumes has the background's label 0, or -1 if a volume has label 0.
   void label_facets() {
-    if (!pair_of_surface_.empty())
-      return verify::label_facets(file_, "$Elements", "surface", elements_.facet_entities(), pair_of_surface_,
+    for (auto& [group, facets] : surface_groups_) facets.side = side_of_group(group);
+    if (!surface_groups_.empty())
+      return verify::label_facets(file_, "$Elements", "surface", elements_.facet_entities(), surface_groups_,
                                   mesh_);
     if (label_of_group_.empty()) return;
     LabelValue outside = 0;
@@ -334,7 +340,19 @@ class GmshReader {
         file_.refuse("$Elements", fmt::format("surface {} bounds no volume", surface));
       for (; side != sides_.end() && side->surface == surface; ++side) labels[side->number] = side->label;
       mesh_.facet_labels.push_back(labels);
+      mesh_.facet_sides.push_back(side_of_surface(surface));
     }
+  }
+
+  std::uint8_t side_of_group(std::int64_t group) const {
+    const auto side = side_of_group_.find(group);
+    return side == side_of_group_.end() ? std::uint8_t{0} : side->second;
+  }
+  std::uint8_t side_of_surface(std::int64_t surface) const {
+    std::uint8_t side = 0;
+    const auto [first, last] = groups_of_surface_.equal_range(surface);
+    for (auto group = first; group != last; ++group) side = std::max(side, side_of_group(group->second));
+    return side;
   }
 
   const MeshFile& file_;
@@ -346,7 +364,9 @@ class GmshReader {
   GmshElements elements_;
   std::array<std::uint64_t, kMostNodes> nodes_{};                // of the current element
   std::map<std::int64_t, LabelValue> label_of_group_;            // of volumes, from podm's comments
-  LabelPairs pair_of_surface_;                                   // from podm's comments
+  FacetGroups surface_groups_;                                   // from podm's comments
+  std::map<std::int64_t, std::uint8_t> side_of_group_;           // of a flat box, by physical group
+  std::multimap<std::int64_t, std::int64_t> groups_of_surface_;  // by entity
   std::map<std::int64_t, std::string> group_names_;              // of volumes
   std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;  // by dimension and entity
   std::vector<Side> sides_;

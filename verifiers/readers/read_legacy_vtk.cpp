@@ -190,8 +190,8 @@ class LegacyVtkReader {
 
   void keep(const std::string& name, std::size_t num_components, NumberArray values) {
     if (is_field_data_) return read_word(percent_decoded(name), values);
-    const bool is_label = label_array_rank(name) || name == "label_a" || name == "label_b";
-    if (is_cell_data_ && is_label) piece_.cell_data.push_back({name, num_components, std::move(values)});
+    if (is_cell_data_ && is_kept_cell_array(name))
+      piece_.cell_data.push_back({name, num_components, std::move(values)});
     if (!is_cell_data_ && id_array_ != nullptr && name == id_array_) keep_ids(values);
   }
 

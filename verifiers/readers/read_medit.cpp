@@ -80,7 +80,7 @@ class MeditBuilder {
  public:
   explicit MeditBuilder(const MeshFile& file) : file_(file) {}
 
-  void read_comment(std::string_view text) { verify::read_comment(file_, text, mesh_, label_pairs_); }
+  void read_comment(std::string_view text) { verify::read_comment(file_, text, mesh_, facet_groups_); }
 
   template <class Numbers>
   void read_vertices(Numbers numbers) {
@@ -130,8 +130,8 @@ class MeditBuilder {
     if (!has_vertices_) file_.refuse(kVertices.keyword, "the file has no such section");
     mesh_.format = std::move(format);
     if (!mesh_.cells.empty()) mesh_.cell_label_array = "medit:ref";
-    if (!label_pairs_.empty())
-      label_facets(file_, "Triangles", "reference", facet_references_, label_pairs_, mesh_);
+    if (!facet_groups_.empty())
+      label_facets(file_, "Triangles", "reference", facet_references_, facet_groups_, mesh_);
     return std::move(mesh_);
   }
 
@@ -142,7 +142,7 @@ class MeditBuilder {
   Mesh mesh_;
   bool has_vertices_ = false;
   std::vector<std::int64_t> facet_references_;
-  LabelPairs label_pairs_;
+  FacetGroups facet_groups_;
 };
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }

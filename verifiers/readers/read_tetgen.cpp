@@ -25,7 +25,7 @@ class TetgenReader {
   Cursor open(const MeshFile& file) {
     Cursor cursor(file);
     cursor.skip_comments(
-        [this, &file](std::string_view text) { read_comment(file, text, mesh_, pair_of_marker_); });
+        [this, &file](std::string_view text) { read_comment(file, text, mesh_, group_of_marker_); });
     return cursor;
   }
 
@@ -109,12 +109,12 @@ class TetgenReader {
       cursor.rest_of_line();
     }
     cursor.is_at_last_word();  // reads the comments at the end
-    if (!pair_of_marker_.empty()) label_facets(file, "a face", "marker", markers, pair_of_marker_, mesh_);
+    if (!group_of_marker_.empty()) label_facets(file, "a face", "marker", markers, group_of_marker_, mesh_);
   }
 
   Mesh mesh_;
   std::int64_t base_ = 1;
-  LabelPairs pair_of_marker_;
+  FacetGroups group_of_marker_;
 };
 
 }  // namespace

@@ -180,8 +180,12 @@ void append_facets(const MeshFile& file, const VtuGrid& grid, const std::vector<
   if (grid.mesh.facets.empty()) return;
   if (!mesh.facets.empty() && mesh.facet_labels.empty() != grid.mesh.facet_labels.empty())
     file.refuse("CellData", "label_a and label_b are missing in a piece that has triangles");
+  const bool has_sides = !mesh.facet_sides.empty() || !grid.mesh.facet_sides.empty();
+  if (has_sides) mesh.facet_sides.resize(mesh.facets.size());
   append_corners(grid.mesh.facets, vertex_of, mesh.facets);
   append_labels(grid.mesh.facet_labels, mesh.facet_labels);
+  append_labels(grid.mesh.facet_sides, mesh.facet_sides);
+  if (has_sides) mesh.facet_sides.resize(mesh.facets.size());
 }
 
 Mesh read_vtu(const MeshFile& file) { return read_vtu_grid(file, nullptr).mesh; }

@@ -59,6 +59,7 @@ void VtkAssembler::append(const VtkPiece& piece, bool is_only) {
   append_cells(piece);
   if (!cells_.empty()) append_cell_labels(piece);
   if (!facets_.empty()) append_facet_labels(piece);
+  if (!facets_.empty()) append_facet_sides(piece);
 }
 
 void VtkAssembler::append_points(const VtkPiece& piece) {
@@ -150,6 +151,23 @@ void VtkAssembler::append_facet_labels(const VtkPiece& piece) {
     const auto a = sides[0]->values.integer(cell), b = sides[1]->values.integer(cell);
     if (!a || !b) refuse(piece, fmt::format("cell {}: label_a or label_b is not an integer", cell));
     mesh_.facet_labels.push_back({*a, *b});
+  }
+}
+
+// Facets of pieces without the array are on no side.
+void VtkAssembler::append_facet_sides(const VtkPiece& piece) {
+  const NamedArray* const sides = find_array(piece, kSideArray);
+  if (sides == nullptr) {
+    if (!mesh_.facet_sides.empty()) mesh_.facet_sides.resize(mesh_.facets.size());
+    return;
+  }
+  if (sides->num_components != 1 || sides->values.size() != piece.types.size())
+    refuse(piece, fmt::format("the array {} is not of one integer per cell", kSideArray));
+  mesh_.facet_sides.resize(mesh_.facets.size() - facets_.size());
+  for (const std::size_t cell : facets_) {
+    const std::int64_t side = sides->values.integer(cell).value_or(-1);
+    if (side < 0 || side > 6) refuse(piece, fmt::format("cell {}: {} is not 0 to 6", cell, kSideArray));
+    mesh_.facet_sides.push_back(static_cast<std::uint8_t>(side));
   }
 }
 

@@ -24,7 +24,7 @@ struct VtkPiece {
   NumberArray points;  ///< 3 per point
   NumberArray types, offsets, connectivity;
   CellLayout layout = CellLayout::kEnds;
-  std::vector<NamedArray> cell_data;  ///< arrays with a name in the list of label arrays, label_a and label_b
+  std::vector<NamedArray> cell_data;  ///< of is_kept_cell_array()
 };
 
 /// Appends pieces of one file to a mesh.
@@ -48,6 +48,7 @@ class VtkAssembler {
                                   std::size_t num_ids) const;
   void append_cell_labels(const VtkPiece& piece);
   void append_facet_labels(const VtkPiece& piece);
+  void append_facet_sides(const VtkPiece& piece);
   [[noreturn]] void refuse(const VtkPiece& piece, const std::string& fault) const;
 
   const MeshFile& file_;

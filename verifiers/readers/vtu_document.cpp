@@ -30,10 +30,6 @@ constexpr TypeName kTypes[] = {
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }
 
-bool is_facet_or_cell_label(const std::string& name) {
-  return name == "label_a" || name == "label_b" || label_array_rank(name);
-}
-
 class VtuParser : XmlParser {
  public:
   explicit VtuParser(const MeshFile& file) : XmlParser(file, "VTU") {}
@@ -105,7 +101,7 @@ class VtuParser : XmlParser {
     VtuPiece& piece = document_.pieces.back();
     if (section == "Points") return &piece.points;
     if (section == "Cells") return &piece.cells;
-    if (section == "CellData") return is_facet_or_cell_label(name) ? &piece.cell_data : nullptr;
+    if (section == "CellData") return is_kept_cell_array(name) ? &piece.cell_data : nullptr;
     if (section == "PointData") return name == "vertex" || name == kGlobalIds ? &piece.point_data : nullptr;
     return nullptr;
   }

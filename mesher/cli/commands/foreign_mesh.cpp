@@ -58,6 +58,7 @@ class MeshBuilder {
     take_frame_and_promises();
     mesh_.vertices = std::move(file_.vertices);
     mesh_.cells = std::move(file_.cells);
+    take_sides();
     orient_cells();
     find_facets();
     if (const auto delta_mm = file_.promised_lines_delta_mm) {
@@ -132,6 +133,7 @@ class MeshBuilder {
     mesh_.is_optimized = file_.unclaimed.contains("delaunay");
     mesh_.dihedral_bounds_deg = file_.promised_dihedral_deg;
     mesh_.smoothing_mm = file_.smoothing_mm.value_or(0);
+    mesh_.is_box_flat = file_.promises_flat_box;
     if (file_.promised_topology) take_listed_differences();
   }
 
@@ -150,6 +152,23 @@ class MeshBuilder {
         difference.voxel[axis] = static_cast<int>(each.voxel[axis]);
       listed.push_back(difference);
     }
+  }
+
+  // A vertex is on the sides of the facets around it.
+  void take_sides() {
+    if (!file_.promises_flat_box) return;
+    mesh_.vertex_sides.assign(mesh_.vertices.size(), 0);
+    bool is_any = false;
+    for (std::size_t f = 0; f < file_.facet_sides.size(); ++f) {
+      if (file_.facet_sides[f] == 0) continue;
+      is_any = true;
+      for (const std::uint32_t vertex : file_.facets[f])
+        if (vertex < mesh_.vertices.size())
+          mesh_.vertex_sides[vertex] |= static_cast<SideMask>(1u << (file_.facet_sides[f] - 1));
+    }
+    if (!is_any)
+      foreign_.warnings.push_back(
+          path_ + ": the file promises a flat box but names no facets of its sides; their sets are left out");
   }
 
   void orient_cells() {
