@@ -85,4 +85,15 @@ std::vector<T> values_of(const Bytes& message) {
   return values;
 }
 
+/// Collective. Sends values[i] to rank i. Returns what this rank receives, in the order of the ranks.
+template <class T>
+std::vector<T> exchanged(const std::vector<std::vector<T>>& values, Communication& ranks) {
+  std::vector<T> here;
+  for (const Bytes& received : ranks.all_to_all(messages_of(values))) {
+    const std::vector<T> more = values_of<T>(received);
+    here.insert(here.end(), more.begin(), more.end());
+  }
+  return here;
+}
+
 }  // namespace podm

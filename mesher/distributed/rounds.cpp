@@ -8,17 +8,17 @@
 #include "algorithms/leaf_size.h"
 #include "algorithms/perturb_loop.h"
 #include "distributed/completion.h"
+#include "distributed/deferred_cells.h"
 #include "distributed/learner.h"
 #include "distributed/leaves_of_zone.h"
 #include "distributed/messages.h"
 #include "distributed/predicted_work.h"
+#include "distributed/restoring.h"
 #include "distributed/seeding.h"
 #include "distributed/vertex_exchange.h"
 #include "distributed/zone.h"
-#include "distributed/zones_of_round.h"
 #include "refine/dihedral_quality.h"
 #include "runtime/parallel_collect.h"
-#include "runtime/parallel_sort.h"
 
 namespace podm {
 
@@ -31,35 +31,8 @@ constexpr int kSeededRings = 2;
 // Number of cubes of the grid around the object. Cubes at the faces of the grid are unbounded, and many cells
 // outside the object have balls there. With more cubes around the object these cubes have fewer vertices.
 constexpr int kCubesAround = 4;
-// A deferred cell also requests vertices within this many of its circumradii. A larger factor costs more than
-// it saves.
-constexpr double kKnownOverRadius = 1;
 // Side of a cube over the circumradius bound.
 constexpr double kCubeOverRadius = 2;
-
-// A name of a cell that is the same on all ranks.
-struct CellName {
-  std::array<Point, 4> vertices;
-};
-
-CellName name_of(const Mesh& mesh, CellId c) {
-  CellName name;
-  for (std::size_t i = 0; i < 4; ++i) name.vertices[i] = mesh.point(mesh.cell(c).vertices[i]);
-  std::sort(name.vertices.begin(), name.vertices.end(), lexicographically_less);
-  return name;
-}
-
-struct Ball {
-  Point center;
-  double radius_mm;
-};
-
-// The deferred cells with their centers in one cube.
-struct Waiting {
-  CubeId cube;
-  std::uint32_t cells;
-  Ball largest;
-};
 
 // A cell that R7 could not change.
 struct KeptName {
@@ -69,12 +42,6 @@ struct KeptName {
 
 // The tasks that ranks do in rounds: R1 to R6, and R7.
 enum class Task { kRefine, kPerturb };
-
-Ball ball_of(const CellName& name, double extent) {
-  const auto& v = name.vertices;
-  const Point center = circumsphere(v[0], v[1], v[2], v[3], extent).center;
-  return {center, distance(center, v[0])};
-}
 
 // Returns the cube side that suits most cells, unless blocks would then be too coarse.
 double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
@@ -146,11 +113,7 @@ class Rounds {
  private:
   bool is_resumed() const { return checkpoints_ != nullptr && checkpoints_->is_resumed(); }
 
-  bool is_over_anywhere() {
-    std::array<std::uint64_t, 1> num_over{stop_.is_over() ? 1u : 0u};
-    ranks_.sum(num_over);
-    return num_over[0] > 0;
-  }
+  bool is_over_anywhere() { return sum_of_all(stop_.is_over() ? 1 : 0) > 0; }
 
   // The others may still make their own shares of the limit of cells.
   static bool concerns_all(StopReason reason) {
@@ -180,16 +143,14 @@ class Rounds {
   }
 
   // Returns how much coarser seeds have to be, a power of two, for their cells to be at most half of the
-  // limit.
-  // A run that is over gets the fewest.
+  // limit. A run that is over gets the fewest.
   double seeds_within_limit() {
     constexpr double kCellsPerSeed = 7, kMost = 1024;
     double coarser = is_over_anywhere() ? kMost : 1;
     for (; stop_.max_elements() > 0 && coarser < kMost; coarser *= 2) {
       const LatticeSeeds seeds(problem_, box_of_seeds(levels_.clamp), learner_.threads(), coarser);
-      std::array<std::uint64_t, 1> num_seeds{seeds.in(block()).size()};
-      ranks_.sum(num_seeds);
-      if (2 * kCellsPerSeed * static_cast<double>(num_seeds[0]) <= static_cast<double>(stop_.max_elements()))
+      const std::uint64_t num_seeds = sum_of_all(seeds.in(block()).size());
+      if (2 * kCellsPerSeed * static_cast<double>(num_seeds) <= static_cast<double>(stop_.max_elements()))
         break;
     }
     return coarser;
@@ -205,26 +166,14 @@ class Rounds {
     exchange_->check();
   }
 
-  // Inserts the vertices of a checkpoint in the block, the fewer elsewhere the farther away, and then those
-  // that the cells with a vertex in the block need. The ranks of the checkpoint may have had other blocks.
+  // Inserts vertices of a checkpoint, and then those that the cells with a vertex in the block need.
   void restore() {
-    std::vector<std::vector<LearntVertex>> of_rank(static_cast<std::size_t>(ranks_.size()));
-    for (const LearntVertex& vertex : checkpoints_->read())
-      of_rank.at(static_cast<std::size_t>(blocks_->of(grid_.place_of(vertex.point)))).push_back(vertex);
-    std::vector<LearntVertex> own = exchanged(of_rank);
-    const std::vector<LearntVertex> some = sparse_around(blocks_->range_of(ranks_.rank()), grid_, own);
-    for (int rank = 0; rank < ranks_.size(); ++rank)
-      of_rank[static_cast<std::size_t>(rank)] = rank == ranks_.rank()
-                                                    ? std::vector<LearntVertex>()
-                                                    : sparse_around(blocks_->range_of(rank), grid_, some);
-    const std::vector<LearntVertex> elsewhere = exchanged(of_rank);
-    of_rank = {};
-    own.insert(own.end(), elsewhere.begin(), elsewhere.end());
-    learner_.learn(own, kReceivedInsertion, nullptr);
+    const std::vector<LearntVertex> vertices = vertices_to_restore(*checkpoints_, *blocks_, grid_, ranks_);
+    learner_.learn(vertices, kReceivedInsertion, nullptr);
     exchange_.emplace(ranks_, learner_, grid_, *blocks_, block());
     const Update more =
         complete(construction_.mesh(), *exchange_, block(), kSeededRings, learner_.threads(), ranks_);
-    num_seeds_ = own.size() + more.inserted;
+    num_seeds_ = vertices.size() + more.inserted;
     exchange_->check();
   }
 
@@ -233,21 +182,8 @@ class Rounds {
   void save() {
     const bool is_last = is_over_ || (rounds_.back().deferred == 0 && problem_.dihedral_bounds);
     if (checkpoints_ == nullptr || !(is_last || checkpoints_->is_due())) return;
-    checkpoints_->write(written_here(), rounds_.size());
-  }
-
-  // Returns the vertices in the cubes that this rank wrote last.
-  std::vector<LearntVertex> written_here() const {
-    const CubeSet cubes = exchange_->written();
-    const Mesh& mesh = construction_.mesh();
-    return parallel_collect<LearntVertex>(mesh.vertex_bound(), learner_.threads(),
-                                          [&](std::size_t begin, std::size_t end, auto& found) {
-                                            for (auto v = static_cast<VertexId>(begin); v < end; ++v) {
-                                              const Vertex& vertex = mesh.vertex(v);
-                                              if (is_shared(vertex.kind) && cubes.has(vertex.point))
-                                                found.push_back({vertex.point, vertex.kind});
-                                            }
-                                          });
+    checkpoints_->write(shared_vertices(construction_.mesh(), exchange_->written(), learner_.threads()),
+                        rounds_.size());
   }
 
   // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex. The
@@ -266,21 +202,19 @@ class Rounds {
 
   // Works until no cell waits, or the run is over.
   void work_in_rounds(Task task, std::vector<RoundReport>& rounds) {
-    zones_.emplace(grid_, *blocks_);
-    load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
-    reach_over_radius_ = 1;
+    ZonesInRounds zones(grid_, *blocks_, construction_.mesh().extent(), learner_.threads(), ranks_);
     std::vector<CellName> here;  // deferred cells that this rank's zone has
     do {
       const auto round = static_cast<int>(rounds.size());
       const bool is_first = round == 0, knows_seeds = is_first && task == Task::kRefine;
       RoundReport report;
-      const CubeSet own = zones_->of(ranks_.rank());
+      const CubeSet own = zones.of_this_round().of(ranks_.rank());
       report.cubes = own.cubes().size();
       const double start_s = ranks_.report().computing_s;
       std::vector<CellName> left;
       if (!knows_seeds) {
         // A rank without cells learns its zone, too: it is the zone's writer from now on.
-        report.update = exchange_->update(wanted(own, here));
+        report.update = exchange_->update(zones.wanted(own.grown(kKnownRings), here));
         exchange_->check();
       }
       const Zone zone(own, exchange_->known(), kKnownRings, knows_seeds ? kRoomInBlocks : 0);
@@ -297,8 +231,11 @@ class Rounds {
       if (end_ != nullptr && concerns_all(stop_.reason())) end_->announce();
       report.refine_s = ranks_.report().computing_s - start_s - report.update_s;
       spending_.end(task == Task::kPerturb ? kPerturb : is_first ? "refine" : "later");
-      exchange_->note_writers(std::move(*zones_), own);
-      here = plan_next(round, left, report);
+      exchange_->note_writers(zones.of_this_round(), own);
+      report.deferred = sum_of_all(left.size());
+      is_over_ = is_over_anywhere();
+      const bool is_last = report.deferred == 0 || is_over_;
+      here = is_last ? std::vector<CellName>() : zones.plan_next(round, left, exchange_->writers());
       rounds.push_back(report);
       if (task == Task::kRefine) save();
     } while (rounds.back().deferred > 0 && !is_over_);
@@ -307,18 +244,8 @@ class Rounds {
   void add_names(const std::vector<CellId>& cells, std::vector<CellName>& names) const {
     const std::size_t before = names.size();
     names.resize(before + cells.size());
-    for_each(cells.size(),
-             [&](std::size_t i) { names[before + i] = name_of(construction_.mesh(), cells[i]); });
-  }
-
-  // Calls work(i) for i < count, on all threads of the rank.
-  template <class Work>
-  void for_each(std::size_t count, const Work& work) const {
-    constexpr std::size_t kLength = 1 << 10;
-    parallel_for_ranges(count, kLength, learner_.threads(),
-                        [&](std::size_t begin, std::size_t end, std::size_t) {
-                          for (std::size_t i = begin; i < end; ++i) work(i);
-                        });
+    parallel_for_each(cells.size(), learner_.threads(),
+                      [&](std::size_t i) { names[before + i] = name_of(construction_.mesh(), cells[i]); });
   }
 
   // A poor cell whose ball reaches beyond the known cubes may be absent here. R7 does not try it.
@@ -330,9 +257,7 @@ class Rounds {
   }
 
   void count_cells_of_all(std::size_t own) {
-    std::array<std::uint64_t, 1> cells{own};
-    ranks_.sum(cells);
-    cells_of_all_ = static_cast<std::int64_t>(cells[0]);
+    cells_of_all_ = static_cast<std::int64_t>(sum_of_all(own));
     cells_reported_ = stop_.num_cells();
   }
 
@@ -397,7 +322,7 @@ class Rounds {
     report.after = count(poor);
     std::set<CellId> unexplained;
     for (const auto& entry : poor) unexplained.insert(entry.cell);
-    for (const KeptName& name : exchanged(kept)) {
+    for (const KeptName& name : exchanged(kept, ranks_)) {
       const auto cell = learner_.find_cell(name.cell.vertices);
       if (cell && unexplained.erase(*cell) > 0) ++report.unmoved[static_cast<std::size_t>(name.why)];
     }
@@ -405,60 +330,18 @@ class Rounds {
     construction_.report(report);
   }
 
-  // Returns the cubes whose vertices must be known in a zone with these deferred cells.
-  CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
-    CubeSet wanted = own.grown(kKnownRings);
-    for (const Waiting& here : by_cube(names))
-      wanted.insert(here.largest.center, kKnownOverRadius * here.largest.radius_mm);
-    return wanted;
-  }
-
-  // Groups cells by the cube of their center. The largest ball of a cube stands for all, because the other
-  // balls hardly reach other places.
-  std::vector<Waiting> by_cube(const std::vector<CellName>& names) const {
-    std::vector<Waiting> each(names.size());
-    for_each(names.size(), [&](std::size_t i) {
-      const Ball ball = ball_of(names[i]);
-      each[i] = {grid_.cube_at(ball.center), 1, ball};
-    });
-    parallel_sort(each.begin(), each.end(), learner_.threads(), [](const Waiting& a, const Waiting& b) {
-      return a.cube != b.cube ? a.cube < b.cube : a.largest.radius_mm > b.largest.radius_mm;
-    });
-    std::vector<Waiting> by_cube;
-    for (const Waiting& one : each) {
-      if (by_cube.empty() || by_cube.back().cube != one.cube) {
-        by_cube.push_back(one);
-      } else {
-        ++by_cube.back().cells;
-      }
-    }
-    return by_cube;
-  }
-
-  // Returns an order in which walks to these cells are short.
-  std::vector<std::size_t> along_curve(const std::vector<CellName>& names) const {
-    std::vector<std::pair<MortonCode, std::size_t>> places(names.size());
-    for_each(names.size(), [&](std::size_t i) {
-      places[i] = {grid_.place_on_curve(names[i].vertices[0]), i};
-    });
-    parallel_sort(places.begin(), places.end(), learner_.threads());
-    std::vector<std::size_t> order;
-    for (const auto& place : places) order.push_back(place.second);
-    return order;
-  }
-
   // Returns the cells with these names in the zone. A cell that is not in the mesh has died if all vertices
   // are known that could be in its ball. Otherwise the cell is `left` for another round.
   Construction::Entries find(const std::vector<CellName>& names, const Zone& zone,
                              std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
-    const std::vector<std::size_t> order = along_curve(names);
+    const std::vector<std::size_t> order = along_curve(names, grid_, learner_.threads());
     const auto cells = learner_.find_cells(
         names.size(), [&](std::size_t i) -> const auto& { return names[order[i]].vertices; });
     const auto is_left = [&](std::size_t i) {
       if (cells[i]) return false;
-      const Ball ball = ball_of(names[order[i]]);
-      return !zone.is_ball_known(ball.center, ball.radius_mm);
+      const Ball ball = circumscribed_ball(names[order[i]], mesh.extent());
+      return !zone.is_ball_known(ball.center, ball.radius);
     };
     Construction::Entries entries;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -577,70 +460,10 @@ class Rounds {
       if (mesh.stamp(entry.cell) == entry.stamp) kept_.push_back({name_of(mesh, entry.cell), why});
   }
 
-  // Informs all ranks where cells wait, divides space around these cells, and returns the cells of this
-  // rank's zone.
-  std::vector<CellName> plan_next(int round, const std::vector<CellName>& left, RoundReport& report) {
-    std::array<std::uint64_t, 1> num_left{left.size()};
-    ranks_.sum(num_left);
-    report.deferred = num_left[0];
-    is_over_ = is_over_anywhere();
-    if (report.deferred == 0 || is_over_) return {};
-    std::vector<CubeCount> num_waiting;
-    const CubeSet waiting = share_waiting(left, round < kShiftedRounds ? nullptr : &num_waiting);
-    zones_.emplace(
-        zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting, exchange_->writers(), load_));
-    if (zones_->are_connected()) reach_over_radius_ *= 2;
-    std::vector<int> rank_of(left.size());
-    for_each(left.size(),
-             [&](std::size_t i) { rank_of[i] = zones_->rank_of(grid_.place_of(ball_of(left[i]).center)); });
-    std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
-    for (std::size_t i = 0; i < left.size(); ++i)
-      names.at(static_cast<std::size_t>(rank_of[i])).push_back(left[i]);
-    if (round < kShiftedRounds) add_load(names);
-    std::vector<CellName> here = std::exchange(names[static_cast<std::size_t>(ranks_.rank())], {});
-    const std::vector<CellName> more = exchanged(names);
-    here.insert(here.end(), more.begin(), more.end());
-    return here;
-  }
-
-  void add_load(const std::vector<std::vector<CellName>>& names) {
-    std::vector<std::uint64_t> more;
-    for (const std::vector<CellName>& of_rank : names) more.push_back(of_rank.size());
-    ranks_.sum(more);
-    std::transform(more.begin(), more.end(), load_.begin(), load_.begin(), std::plus<>());
-  }
-
-  // Returns the cubes that the deferred cells of all ranks request. Adds the numbers of cells with their
-  // centers in each cube to `num_waiting`, if it is given.
-  CubeSet share_waiting(const std::vector<CellName>& left, std::vector<CubeCount>* num_waiting) {
-    CubeSet around(grid_), waiting(grid_);
-    Bytes message;
-    std::vector<CubeCount> counts;
-    for (const Waiting& here : by_cube(left)) {
-      around.insert(here.largest.center, reach_over_radius_ * here.largest.radius_mm);
-      if (num_waiting != nullptr) counts.push_back({here.cube, here.cells});
-    }
-    append(message, around.runs());
-    append(message, counts);
-    for (const Bytes& received : ranks_.all_gather(std::move(message))) {
-      MessageReader reader(received);
-      for (const auto& run : reader.read<CubeRun>()) waiting.insert(run);
-      for (const CubeCount& more : reader.read<CubeCount>()) num_waiting->push_back(more);
-    }
-    return waiting;
-  }
-
-  Ball ball_of(const CellName& name) const { return podm::ball_of(name, construction_.mesh().extent()); }
-
-  // Returns what all ranks have for this one.
-  template <class Value>
-  std::vector<Value> exchanged(const std::vector<std::vector<Value>>& values) {
-    std::vector<Value> here;
-    for (const Bytes& received : ranks_.all_to_all(messages_of(values))) {
-      const auto more = values_of<Value>(received);
-      here.insert(here.end(), more.begin(), more.end());
-    }
-    return here;
+  std::uint64_t sum_of_all(std::uint64_t here) {
+    std::array<std::uint64_t, 1> sum{here};
+    ranks_.sum(sum);
+    return sum[0];
   }
 
   const Problem& problem_;
@@ -657,10 +480,7 @@ class Rounds {
   Learner learner_;
   std::optional<Blocks> blocks_;
   std::optional<VertexExchange> exchange_;
-  std::optional<Zones> zones_;          // of the round
   std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
-  double reach_over_radius_ = 1;        // the largest ball of a cube requests a zone within this many radii
-  std::vector<std::uint64_t> load_;     // by rank: deferred cells assigned to it
   std::vector<RoundReport> rounds_, perturbing_rounds_;
   std::optional<PerturbationReport> perturbation_;  // of R7, if it is applied
   std::vector<KeptName> kept_;                      // cells that R7 could not change on this rank

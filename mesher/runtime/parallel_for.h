@@ -45,4 +45,13 @@ void parallel_for_ranges(std::size_t size, std::size_t length, std::size_t threa
   });
 }
 
+/// Calls work(i) once for each i < size. A free thread takes the next thousand. Meant for short work.
+template <class Work>
+void parallel_for_each(std::size_t size, std::size_t threads, const Work& work) {
+  constexpr std::size_t kLength = 1 << 10;
+  parallel_for_ranges(size, kLength, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
 }  // namespace podm
