@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/affine.h"
 #include "geometry/predicates.h"
 #include "runtime/parallel_for.h"
 
