@@ -108,12 +108,18 @@ class Comparison {
       });
   }
 
-  // `matching` begins with the largest piece.
+  // `matching` begins with the largest piece. If several are the largest, one that is at no ambiguous place
+  // counts as it, so that no order of cells decides.
   bool is_split_ambiguous(const ImageRegion& of_image, const std::vector<std::uint32_t>& matching) const {
-    const auto others = std::count_if(matching.begin() + 1, matching.end(), [&](std::uint32_t region) {
-      return !is_at_ambiguous_place(of_mesh_[region]);
-    });
-    return static_cast<std::uint64_t>(others) < of_image.num_joined;
+    const auto size = [&](std::uint32_t region) { return of_mesh_[region].num_cells; };
+    std::uint64_t others = 0;
+    bool is_largest_away = false;
+    for (const std::uint32_t region : matching) {
+      if (is_at_ambiguous_place(of_mesh_[region])) continue;
+      ++others;
+      is_largest_away = is_largest_away || size(region) == size(matching.front());
+    }
+    return others - (is_largest_away ? 1 : 0) < of_image.num_joined;
   }
 
   void compare(std::uint32_t region) {

@@ -124,15 +124,18 @@ class Matching {
       if (match_[m] != kNone) matching_[match_[m]].push_back(m);
   }
 
+  // If several pieces are the largest, one that is at no ambiguous place counts as it.
   bool is_split_ambiguous(std::uint32_t r) const {
-    const auto& pieces = matching_[r];
-    const std::uint32_t largest =
-        *std::max_element(pieces.begin(), pieces.end(), [&](std::uint32_t a, std::uint32_t b) {
-          return of_mesh_.regions[a].size < of_mesh_.regions[b].size;
-        });
-    std::uint64_t others = 0;
-    for (const std::uint32_t m : pieces) others += m != largest && !is_at_ambiguous_place(m);
-    return others < of_image_.facts[r].parts;
+    std::size_t largest = 0;
+    for (const std::uint32_t m : matching_[r])
+      largest = std::max<std::size_t>(largest, of_mesh_.regions[m].size);
+    std::uint64_t others = 0, spared = 0;
+    for (const std::uint32_t m : matching_[r]) {
+      if (is_at_ambiguous_place(m)) continue;
+      ++others;
+      if (of_mesh_.regions[m].size == largest) spared = 1;
+    }
+    return others - spared < of_image_.facts[r].parts;
   }
 
   // True for a small region of the mesh with an ambiguous place of its label near its bounds.

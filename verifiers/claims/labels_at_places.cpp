@@ -64,7 +64,7 @@ void LabelsAtPlaces::read(const std::array<Point, 4>& cell, LabelValue label) {
     for (int y = low[1]; y <= high[1]; ++y)
       for (std::size_t i = first_of_[row(y, z)]; i < first_of_[row(y, z) + 1]; ++i) {
         const HalfVoxel& at = places_[i];
-        if (at[0] < low[0] || at[0] > high[0] || is_known_[i] != 0) continue;
+        if (at[0] < low[0] || at[0] > high[0] || (is_known_[i] != 0 && labels_[i] <= label)) continue;
         if (!contains(cell,
                       {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])}))
           continue;

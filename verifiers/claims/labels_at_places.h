@@ -11,8 +11,8 @@ namespace podm::verify {
 
 class LabelsAtPlaces {
  public:
-  /// `places` are sorted by z, y, x. The label at a place is that of the first cell that contains it,
-  /// computed in rounded coordinates, or 0.
+  /// `places` are sorted by z, y, x. The label at a place is the least one of the cells that
+  /// contain it, on their facets too, computed in rounded coordinates, or 0.
   LabelsAtPlaces(const Mesh& mesh, const Image& image, const ImageFrame& frame,
                  std::vector<HalfVoxel> places);
 
