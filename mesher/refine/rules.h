@@ -33,7 +33,7 @@
 // the object is a million radii from the origin.
 //
 // Delta by place (sizing/delta_field.h). If thin layers are kept, delta is a function of the place with the
-// Lipschitz constant L = 1/4 and the least value delta_0:
+// Lipschitz constant L = 0.4 and the least value delta_0:
 //   R1  keeps delta(z) from isosurface vertices
 //   R2  applies if r is at least twice the smaller one of delta(c) and delta(z), and keeps r
 //   R6  removes circumcenter vertices v closer to z than twice the smaller one of delta(z) and delta(v): with
@@ -41,10 +41,11 @@
 // The proof holds with s = min(delta_0, r_t / k): R1 keeps delta_0 >= s, R2 and R6 keep 2 delta_0, and R3 to
 // R5 do not depend on delta. It also holds for a mesh that was refined before with larger deltas, as long as
 // delta_0 is the same (algorithms/mend_topology.h): all rules kept at least as much then.
-//   Cover: an isosurface point p has an isosurface vertex within 11 delta(p). It lies in the ball of a cell,
+//   Cover: an isosurface point p has an isosurface vertex within 29 delta(p). It lies in the ball of a cell,
 //   |p - c| <= r < 2 delta(c) as R2 does not apply, thus delta(c) < delta(p) + 2 L delta(c), which is
-//   delta(c) < 2 delta(p). Further |c - z| <= |p - c| < 4 delta(p), and delta(z) < delta(p) + 8 L delta(p) =
-//   3 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 4 + 4 + 3. With one delta it is 5 delta.
+//   delta(c) < 5 delta(p), and needs L < 1/2. Further |c - z| <= |p - c| < 10 delta(p), and delta(z) <
+//   delta(p) + 20 L delta(p) = 9 delta(p). R1 leaves a vertex within delta(z) of z. The sum is 10 + 10 + 9.
+//   With one delta it is 5 delta. Termination does not depend on L.
 //
 // Flat box (isosurface/box_planes.h). Each sample has a set of sides that it is on. R3 also applies to a
 // facet whose dual edge leaves a label through a side, unless all three vertices are on that side. Then the

@@ -15,7 +15,7 @@ namespace podm {
 
 class DeltaField {
  public:
-  static constexpr double kSlope = 0.25;
+  static constexpr double kSlope = 0.4;
   /// Exceeds the errors of numbers in single precision, relative to a delta.
   static constexpr double kMargin = 1e-6;
 
