@@ -101,7 +101,7 @@ void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& 
   };
   do_collectively(write_aside, ranks);
   int num_earlier_pieces = 0;
-  on_first([&] { num_earlier_pieces = withdraw_pvtu_index(path); });
+  on_first([&] { num_earlier_pieces = withdraw_pvtu_index(path, piece.num_pieces); });
   do_collectively([&] { publish_together(files); }, ranks);
   on_first([&] { write_pvtu_index(path, piece.num_pieces, num_earlier_pieces); });
 }

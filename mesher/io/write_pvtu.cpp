@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -70,21 +71,34 @@ void remove_old(const std::string& path) {
   if (error) fail_to_write(path, error.value());
 }
 
+// While pieces are published there is no index. This file lists them, so that a later run can remove the
+// pieces of a run that was killed meanwhile.
+std::string unfinished_path(const std::string& index_path) { return index_path + ".unfinished"; }
+
+// Returns the number of pieces that a file lists; 0 if it does not exist or is not one of podm's indices.
+int pieces_in(const std::string& file_path, const std::string& index_path) {
+  std::ifstream file(file_path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  int num_pieces = 0;
+  for (std::size_t at = text.find(kPiece); at != std::string::npos; at = text.find(kPiece, at + 1))
+    ++num_pieces;
+  return text == index_of_cells(index_path, num_pieces) ? num_pieces : 0;
+}
+
 }  // namespace
 
 std::deque<AtomicFile> write_pvtu_piece(const MeshPiece& piece, const std::string& index_path) {
   return write_vtu_aside(piece.mesh, &piece.vertex_ids, piece_path(index_path, piece.rank));
 }
 
-int withdraw_pvtu_index(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  int num_pieces = 0;
-  for (std::size_t at = text.find(kPiece); at != std::string::npos; at = text.find(kPiece, at + 1))
-    ++num_pieces;
+int withdraw_pvtu_index(const std::string& path, int num_pieces) {
+  const int num_earlier_pieces = std::max(pieces_in(path, path), pieces_in(unfinished_path(path), path));
+  AtomicFile unfinished(unfinished_path(path));
+  unfinished.write(index_of_cells(path, std::max(num_pieces, num_earlier_pieces)));
+  unfinished.publish();
   remove_old(path);
   remove_old(facets_path_of(path));
-  return text == index_of_cells(path, num_pieces) ? num_pieces : 0;
+  return num_earlier_pieces;
 }
 
 void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_pieces) {
@@ -99,6 +113,7 @@ void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_p
     remove_old(facets_path_of(piece_path(path, rank)));
   }
   remove_old_temporaries(folder_of(path), [&](const std::string& target) { return is_piece(target, path); });
+  remove_old(unfinished_path(path));
 }
 
 }  // namespace podm

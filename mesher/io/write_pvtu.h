@@ -17,12 +17,14 @@ namespace podm {
 std::deque<AtomicFile> write_pvtu_piece(const MeshPiece& piece, const std::string& index_path);
 
 /// Removes the index of an earlier mesh, because no index may list pieces of two meshes during publication.
-/// Returns the number of pieces in the index; 0 if there was no index, or none that podm wrote.
-int withdraw_pvtu_index(const std::string& path);
+/// Before that writes x.pvtu.unfinished, which lists the pieces of both. Returns the number of pieces of the
+/// earlier mesh, also of one whose run was killed before its index was written; 0 if there was none, or none
+/// that podm wrote.
+int withdraw_pvtu_index(const std::string& path, int num_pieces);
 
 /// Writes the index of the cells and that of the facets. All pieces must have been published. Then removes
-/// the remaining pieces of an earlier mesh that had more pieces, and what a killed run of more ranks has left
-/// of its pieces.
+/// the remaining pieces of an earlier mesh that had more pieces, what a killed run of more ranks has left of
+/// its pieces, and x.pvtu.unfinished.
 void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_pieces);
 
 }  // namespace podm

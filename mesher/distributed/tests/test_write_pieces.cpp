@@ -9,6 +9,7 @@
 #include "distributed/write_pieces.h"
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/split_mesh.h"
+#include "io/write_pvtu.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
 #include "tests/fault_of.h"
@@ -186,6 +187,18 @@ TEST(WritePvtu, PiecesOfALargerMeshGoWithItsIndex) {
   write_in_pieces(mesh, 2, folder / "a.pvtu", write_pvtu);
   EXPECT_EQ(folder.files(), (std::set<std::string>{"a.pvtu", "a_0.vtu", "a_0_facets.vtu", "a_1.vtu",
                                                    "a_1_facets.vtu", "a_7.vtu", "a_facets.pvtu"}));
+}
+
+TEST(WritePvtu, PiecesOfARunThatWasKilledBeforeItsIndexGo) {
+  const ScratchFolder folder;
+  const TetMesh mesh = make_test_mesh();
+  folder.write("a_7.vtu", "of somebody else");
+  write_in_pieces(mesh, 4, folder / "a.pvtu", write_pvtu);
+  EXPECT_EQ(withdraw_pvtu_index(folder / "a.pvtu", 3), 4);  // and is killed
+  EXPECT_EQ(folder.files().count("a.pvtu.unfinished"), 1u);
+  write_in_pieces(mesh, 1, folder / "a.pvtu", write_pvtu);
+  EXPECT_EQ(folder.files(),
+            (std::set<std::string>{"a.pvtu", "a_0.vtu", "a_0_facets.vtu", "a_7.vtu", "a_facets.pvtu"}));
 }
 
 TEST(WritePvtu, AnIndexOfOthersIsReplacedAndItsPiecesStay) {
