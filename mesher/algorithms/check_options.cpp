@@ -131,7 +131,7 @@ void check_affine(const LabelImage& image) {
   if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the affine of the image is singular");
 }
 
-void check_box(const LabelImage& image, BoxFaces box, const LinesOptions& lines) {
+void check_box(const LabelImage& image, BoxFaces box) {
   if (image.is_box_flat != (box == BoxFaces::kFlat))
     throw InputError("the option box differs from LabelImage::is_box_flat");
   if (box == BoxFaces::kFlat && is_sheared(image))
@@ -139,9 +139,6 @@ void check_box(const LabelImage& image, BoxFaces box, const LinesOptions& lines)
         fmt::format("{} flat: the affine of the image is sheared; the sides of its box are not at "
                     "right angles",
                     spelled("box")));
-  if (box == BoxFaces::kFlat && lines.are_kept)
-    throw InputError(fmt::format("{} flat excludes {}: lines are not sampled on the sides of the box",
-                                 spelled("box"), spelled("lines")));
 }
 
 }  // namespace
@@ -164,7 +161,7 @@ void check_options_but_voxels(const LabelImage& image, const MeshingOptions& opt
   check_team_size(options.team, options.algorithm);
   check_crossover(options);
   check_optimization(options);
-  check_box(image, options.box, options.lines);
+  check_box(image, options.box);
 }
 
 }  // namespace podm

@@ -42,8 +42,8 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
   construction.reduce_capacity(bytes_of_leaves);
-  sample_box(construction, levels.final, "initial");
   sample_lines(construction, levels.final);
+  sample_box(construction, levels.final, "initial");
   levels.initial.lines = levels.final.lines;
   refine_anywhere(construction, "initial", levels.initial, construction.all_cells(),
                   team.initial_workers);  // 4

@@ -81,8 +81,8 @@ Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
   Parameters parameters = parameters_for(problem, 1, clamp);
-  sample_box(construction, parameters, "refine");
   sample_lines(construction, parameters);
+  sample_box(construction, parameters, "refine");
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers());
   mend_topology(construction, parameters);
   mend_lines(construction, parameters);

@@ -55,8 +55,8 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
     return looking_up_places(num_samples);
   });
   Parameters parameters = parameters_for(problem, 1, clamp);
-  sample_box(construction, parameters, "refine");
   sample_lines(construction, parameters);
+  sample_box(construction, parameters, "refine");
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);
   mend_topology(construction, parameters);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "algorithms/sampler.h"
 #include "delaunay/walk.h"
 #include "lines/arc.h"
 
@@ -15,18 +16,12 @@ namespace {
 // long, and thus are not in its diametral ball.
 constexpr double kMostSpacing = 1.4, kLeastSpacing = 0.7;
 
-// Inserts samples, as the only worker.
-class BoxSampler {
+class BoxSampler : Sampler {
  public:
   BoxSampler(Construction& construction, const Parameters& parameters, const char* phase)
-      : stop_(construction.stop()),
-        mesh_(construction.mesh()),
+      : Sampler(construction, parameters, phase),
         isosurface_(construction.problem().isosurface),
-        parameters_(parameters),
-        workers_(construction.make_workers<NoLocks>(parameters, 1, phase)),
-        worker_(*workers_.front()) {}
-  ~BoxSampler() { worker_.flush_log(); }
-  BoxSampler(const BoxSampler&) = delete;
+        parameters_(parameters) {}
 
   void sample(const LineNetwork& curves) {
     for (const LineNode& node : curves.nodes)
@@ -58,21 +53,8 @@ class BoxSampler {
     if (worker_.insert_sample(*z, last_, kLeastSpacing * delta_at(*z))) last_ = worker_.created().front();
   }
 
-  // One look at the limits takes much less time than an insertion.
-  bool is_over() {
-    meter_.report(worker_, stop_);
-    stop_.check_limits();
-    return stop_.is_over();
-  }
-
-  StopControl& stop_;
-  CellMeter meter_;
-  Mesh& mesh_;
   const Isosurface& isosurface_;
   const Parameters& parameters_;
-  const Construction::Workers<NoLocks> workers_;
-  Worker<NoLocks>& worker_;
-  CellId last_ = 0;
 };
 
 }  // namespace

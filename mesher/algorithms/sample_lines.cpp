@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/podm.h"
+#include "algorithms/sampler.h"
 #include "delaunay/walk.h"
 #include "podm/errors.h"
 #include "podm/option.h"
@@ -26,19 +27,13 @@ constexpr double kFloor = 0.25;
 constexpr double kMostDeviation = 0.25;
 constexpr std::size_t kLeastOfLoop = 3;  // edges
 
-// The only worker. It finds cells by walks from the last one.
-class LineSampler {
+class LineSampler : Sampler {
  public:
   LineSampler(Construction& construction, const Parameters& parameters)
-      : stop_(construction.stop()),
-        mesh_(construction.mesh()),
+      : Sampler(construction, parameters, kLines),
         rules_(construction.mesh(), construction.problem().isosurface, parameters),
         edges_(*parameters.lines),
-        lines_(edges_.lines()),
-        workers_(construction.make_workers<NoLocks>(parameters, 1, kLines)),
-        worker_(*workers_.front()) {}
-  ~LineSampler() { worker_.flush_log(); }
-  LineSampler(const LineSampler&) = delete;
+        lines_(edges_.lines()) {}
 
   void sample();
   /// Splits edges until none is left to split, or the run is over. Returns the number of splits.
@@ -50,7 +45,6 @@ class LineSampler {
   Construction::Entries take_changed() { return std::exchange(changed_, {}); }
 
  private:
-  bool is_over();
   VertexId insert(const LinePoint& at);
   void sample(std::size_t arc);
   void list_poor();
@@ -66,31 +60,18 @@ class LineSampler {
     for (const CellId c : cells) changed_.push_back({c, mesh_.stamp(c)});
   }
 
-  StopControl& stop_;
-  CellMeter meter_;
-  Mesh& mesh_;
   const Rules rules_;
   LineEdges& edges_;
   const Lines& lines_;
-  const Construction::Workers<NoLocks> workers_;
-  Worker<NoLocks>& worker_;
-  CellId last_ = 0;
   std::deque<LineEdge> listed_;
   Construction::Entries changed_;
   std::vector<CellId> ball_;  // scratch
 };
 
-// One look at the limits takes much less time than an insertion or a ball.
-bool LineSampler::is_over() {
-  meter_.report(worker_, stop_);
-  stop_.check_limits();
-  return stop_.is_over();
-}
-
 // Where the exact point is not found, the vertex is at least on the isosurface.
 VertexId LineSampler::insert(const LinePoint& at) {
-  std::optional<Point> p = at.point;
-  if (!at.is_exact) p = rules_.settled(at.point, edges_.delta_mm());
+  std::optional<SurfacePoint> p = at.point;
+  if (!at.is_exact) p = rules_.settled_on_sides(at.point, edges_.delta_mm());
   const VertexId v = p ? worker_.insert_on_line(*p, living_cell(mesh_, last_)) : kNoVertex;
   if (v == kNoVertex) return v;
   last_ = worker_.created().front();
@@ -101,10 +82,10 @@ VertexId LineSampler::insert(const LinePoint& at) {
 void LineSampler::sample() {
   const LineNetwork& network = lines_.network();
   for (std::size_t node = 0; node < network.nodes.size() && !is_over(); ++node) {
-    const std::optional<Point> exact = lines_.exact_node(node);
+    const std::optional<SurfacePoint> exact = lines_.exact_node(node);
     VertexId v = exact ? insert({*exact, 0, true}) : kNoVertex;
     const bool is_exact = v != kNoVertex;
-    if (!is_exact) v = insert({network.nodes[node].point, 0, false});  // two may be one exact point
+    if (!is_exact) v = insert({lines_.node(node), 0, false});  // two may be one exact point
     if (v == kNoVertex) continue;
     edges_.set_node(node, v);
     edges_.num_inexact += !is_exact;

@@ -27,6 +27,8 @@ class BoxPlanes {
   bool contains(const Point& p) const;
   /// The point of the box that is nearest to p, and the sides onto which p was moved.
   SurfacePoint clamped(const Point& p) const { return moved_onto_sides(p, 0); }
+  /// Moves z onto all planes within kInPlane voxels of it, and into the box.
+  SurfacePoint in_planes(const Point& z) const { return moved_onto_sides(z, kInPlane); }
   /// Moves z onto all planes within kSnap voxels of it, and into the box.
   SurfacePoint snapped(const Point& z) const { return moved_onto_sides(z, kSnap); }
   /// The same, but only onto the nearest planes that are within `reach_mm` together.
@@ -50,6 +52,8 @@ class BoxPlanes {
   // In the outermost half voxel the label function does not change along the axis. A point may therefore move
   // to the plane and stays on the isosurface. Points slightly beside a plane would only make small cells.
   static constexpr double kSnap = 0.45;
+  // Vertices on lines stay as near to a plane as this, where their line ends.
+  static constexpr double kInPlane = 0.01;
 
   struct Axis {
     double low = 0, high = 0, voxel_mm = 0;

@@ -156,6 +156,8 @@ class Oracle {
   /// The point of an edge of the box, or of a curve in which an interface with background meets a side, near
   /// p. `sides` are those of the edge or curve. None if there is no such point within half a voxel.
   std::optional<SurfacePoint> on_curve_of_box(const Point& p, SideMask sides) const;
+  /// True if both labels are around a point on sides of the box, in the planes of these sides.
+  bool is_between(const SurfacePoint& z, LabelIndex a, LabelIndex b) const;
   /// True if the same search finds a change along ab. The label at both ends must be `label`.
   bool is_crossed(const Point& a, const Point& b, LabelIndex label) const {
     if (box_) [[unlikely]]

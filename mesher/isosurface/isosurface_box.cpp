@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "isosurface/isosurface.h"
 
@@ -134,6 +135,24 @@ std::optional<SurfacePoint> Oracle<Reads>::on_curve_of_box(const Point& p, SideM
 }
 
 template <class Reads>
+bool Oracle<Reads>::is_between(const SurfacePoint& z, LabelIndex a, LabelIndex b) const {
+  constexpr int kDirections = 12;
+  constexpr double kBeside = 1e-3;  // voxels
+  const Point u = to_voxels(z);
+  bool has_a = false, has_b = false;
+  for (int i = 0; i < kDirections && !(has_a && has_b); ++i) {
+    const double angle = 2 * std::numbers::pi * i / kDirections;
+    const double x = kBeside * std::cos(angle), y = kBeside * std::sin(angle);
+    for (const Vector& beside : {Vector{x, y, 0}, Vector{y, 0, x}, Vector{0, x, y}}) {
+      const LabelIndex label = label_clamped(box_->moved_onto(z.sides, from_voxels(u + beside)));
+      has_a = has_a || label == a;
+      has_b = has_b || label == b;
+    }
+  }
+  return has_a && has_b;
+}
+
+template <class Reads>
 std::optional<SurfacePoint> Oracle<Reads>::intersection_in_box(const Point& a, const Point& b) const {
   if (!box_->contains(a)) return intersection_from_outside(a, b);
   const bool is_b_inside = box_->contains(b);
@@ -164,6 +183,7 @@ std::optional<SurfacePoint> Oracle<Reads>::intersection_from_outside(const Point
   template SurfacePoint Oracle<Reads>::moved_onto_edge(const SurfacePoint&, double) const;                 \
   template SurfacePoint Oracle<Reads>::settled_on_edge(const SurfacePoint&, double) const;                 \
   template std::optional<SurfacePoint> Oracle<Reads>::on_curve_of_box(const Point&, SideMask) const;       \
+  template bool Oracle<Reads>::is_between(const SurfacePoint&, LabelIndex, LabelIndex) const;              \
   template std::optional<SurfacePoint> Oracle<Reads>::intersection_in_box(const Point&, const Point&) const;
 PODM_INSTANTIATE(NoReads)
 PODM_INSTANTIATE(CountedReads)

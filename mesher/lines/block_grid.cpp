@@ -15,6 +15,17 @@ BlockCorners BlockGrid::corners(const Voxel& block) const {
   return corners;
 }
 
+LatticeRange BlockGrid::range(const Voxel& block) const {
+  LatticeRange range;
+  if (!is_box_flat_) return range;
+  const std::array<int, 3> place{block.i, block.j, block.k};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (place[a] < 0) range.low[a] = kLatticeSteps / 2;
+    if (place[a] == size(a) - 1) range.high[a] = kLatticeSteps / 2;
+  }
+  return range;
+}
+
 // Reads a row of voxels with one more at each end.
 void BlockGrid::read_row(int j, int k, LabelIndex* row) const {
   const int num_x = image_.size[0];

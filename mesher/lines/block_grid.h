@@ -8,6 +8,7 @@
 
 #include "image/voxel.h"
 #include "isosurface/voxel_weights.h"
+#include "lines/lattice.h"
 #include "lines/weight_forms.h"
 #include "podm/label_image.h"
 
@@ -27,6 +28,8 @@ class BlockGrid {
   int size(std::size_t axis) const { return image_.size[axis]; }
 
   BlockCorners corners(const Voxel& block) const;
+  /// The part of a block that counts.
+  LatticeRange range(const Voxel& block) const;
   /// The weight of the voxel nearest to v.
   std::int32_t weight(const Voxel& v) const {
     return weights_ == nullptr ? 1 : weights_->at(index_of_nearest(v));

@@ -105,7 +105,19 @@ std::vector<std::size_t> without_pairs(const std::vector<Chain>& chains,
   return left;
 }
 
-void merge_parallel(std::vector<Chain>& chains, RemovedCurves& removed) {
+// On a side of the box the background outside is one of the labels.
+bool is_line(const BlockChains& block, const Chain& chain) {
+  FewLabels labels = chain.labels;
+  if (block.sides != 0) labels.insert(kBackground);
+  return labels.size() >= kLabelsOfLine;
+}
+
+void note_removed(const BlockChains& block, const Chain& chain, RemovedCurves& removed) {
+  if (is_line(block, chain)) removed.length_voxels += length(chain.points);
+}
+
+void merge_parallel(BlockChains& block, RemovedCurves& removed) {
+  std::vector<Chain>& chains = block.chains;
   std::vector<bool> is_done(chains.size());
   std::vector<Chain> merged;
   for (std::size_t a = 0; a < chains.size(); ++a) {
@@ -115,9 +127,10 @@ void merge_parallel(std::vector<Chain>& chains, RemovedCurves& removed) {
       if (!is_done[b] && are_parallel(chains[a], chains[b])) bundle.push_back(b);
     for (const std::size_t c : bundle) is_done[c] = true;
     const std::vector<std::size_t> left = without_pairs(chains, bundle);
-    if (left.size() < bundle.size()) removed.points.push_back(chains[a].points[chains[a].points.size() / 2]);
+    if (left.size() < bundle.size() && is_line(block, chains[a]))
+      removed.points.push_back(chains[a].points[chains[a].points.size() / 2]);
     for (const std::size_t c : bundle)
-      if (std::ranges::find(left, c) == left.end()) removed.length_voxels += length(chains[c].points);
+      if (std::ranges::find(left, c) == left.end()) note_removed(block, chains[c], removed);
     if (left.empty()) continue;
     for (const std::size_t c : left) chains[left[0]].labels.insert(chains[c].labels);
     merged.push_back(std::move(chains[left[0]]));
@@ -132,10 +145,10 @@ RemovedCurves merge_chains(BlockChains& block, const std::function<JointKey(std:
   if (block.chains.size() > 1) join_near_misses(block, new_key);
   std::erase_if(block.chains, [&](const Chain& chain) {
     const bool is_small = is_small_loop(chain);
-    if (is_small) removed.length_voxels += length(chain.points);
+    if (is_small) note_removed(block, chain, removed);
     return is_small;
   });
-  if (block.chains.size() > 1) merge_parallel(block.chains, removed);
+  if (block.chains.size() > 1) merge_parallel(block, removed);
   return removed;
 }
 

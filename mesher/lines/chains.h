@@ -47,7 +47,7 @@ struct BlockChains {
 ///   chains with the same labels are removed: between them is a layer thinner than the distance.
 /// - Where two chains come as close between their ends, both are split, and joined by a new joint.
 /// `new_key(n)` names the n-th new joint of the block. Returns a point of each removed pair, and the length
-/// of all removed chains.
+/// of all removed chains, if they are parts of lines.
 RemovedCurves merge_chains(BlockChains& block, const std::function<JointKey(std::size_t)>& new_key);
 
 /// Appends the chains and the joints that are emitted, with the background if `has_outside`.

@@ -18,12 +18,15 @@ namespace {
 
 constexpr int kMostRounds = 16;
 constexpr double kLeastSegment = 1e-3;  // voxels
+constexpr double kLeavingShare = 2;     // of the way by which an end at a side moves
 
 void unite(std::vector<LabelIndex>& labels, const std::vector<LabelIndex>& others) {
   std::vector<LabelIndex> all;
   std::set_union(labels.begin(), labels.end(), others.begin(), others.end(), std::back_inserter(all));
   labels = std::move(all);
 }
+
+bool is_line(const std::vector<LabelIndex>& labels) { return labels.size() >= kLabelsOfLine; }
 
 bool contains(unsigned sides, unsigned others) { return (sides & others) == others; }
 
@@ -77,7 +80,8 @@ class Clusters {
 
 class Simplifier {
  public:
-  explicit Simplifier(LineGraph& graph) : nodes_(graph.nodes), arcs_(graph.arcs) {}
+  Simplifier(LineGraph& graph, bool leaves_sides)
+      : nodes_(graph.nodes), arcs_(graph.arcs), leaves_sides_(leaves_sides) {}
 
   RemovedCurves operator()() {
     for (int round = 0; round < kMostRounds; ++round) {
@@ -97,12 +101,17 @@ class Simplifier {
   bool contract_short_arcs();
   void contract(Clusters& clusters);
   void move_nodes(Clusters& clusters);
-  static void move_end(GraphArc& arc, std::size_t end, const Point& point);
+  void move_end(GraphArc& arc, std::size_t end, const GraphNode& node) const;
   bool remove_small_loops();
   bool merge_parallel_arcs();
   void merge_bundle(const std::vector<std::size_t>& bundle, std::vector<bool>& is_removed);
   bool remove_needless_nodes();
   void remove_short_closed_arcs();
+  void note_removed(const GraphArc& arc, std::size_t point) {
+    if (!is_line(arc.labels)) return;
+    removed_.points.push_back(arc.points[point]);
+    removed_.length_voxels += length(arc.points);
+  }
   void add_contracted();
   bool erase(const std::vector<bool>& is_removed);
   std::size_t end(std::size_t arc, std::size_t e) const {
@@ -111,6 +120,7 @@ class Simplifier {
 
   std::vector<GraphNode>& nodes_;
   std::vector<GraphArc>& arcs_;
+  bool leaves_sides_;
   // An arc, or a part of one, that became a part of a node.
   struct Contracted {
     std::size_t node;
@@ -162,17 +172,21 @@ void Simplifier::contract(Clusters& clusters) {
 }
 
 // Moves the end of an arc. The arc stays as it is outside the ball around the new place through the old one.
-void Simplifier::move_end(GraphArc& arc, std::size_t end, const Point& point) {
+// An arc that ends at a side stands at right angles to it and would touch this ball: its last part would lie
+// in the side.
+void Simplifier::move_end(GraphArc& arc, std::size_t end, const GraphNode& node) const {
+  const Point& point = node.point;
   if (end == 0) std::reverse(arc.points.begin(), arc.points.end());
-  const double moved = distance(arc.points.back(), point);
+  const double reach = distance(arc.points.back(), point) *
+                       (leaves_sides_ && !contains(arc.sides, node.sides) ? kLeavingShare : 1);
   Point inside = arc.points.back();
   arc.points.pop_back();
-  while (arc.points.size() > 1 && distance(arc.points.back(), point) <= moved) {
+  while (arc.points.size() > 1 && distance(arc.points.back(), point) <= reach) {
     inside = arc.points.back();
     arc.points.pop_back();
   }
-  if (moved > kSimplifyTolerance && distance(arc.points.back(), point) > moved)
-    arc.points.push_back(at_distance(point, moved, arc.points.back(), inside));
+  if (reach > kSimplifyTolerance && distance(arc.points.back(), point) > reach)
+    arc.points.push_back(at_distance(point, reach, arc.points.back(), inside));
   arc.points.push_back(point);
   if (end == 0) std::reverse(arc.points.begin(), arc.points.end());
 }
@@ -204,7 +218,7 @@ void Simplifier::move_nodes(Clusters& clusters) {
       const std::size_t root = clusters.find(static_cast<std::size_t>(arc.ends[e]));
       arc.ends[e] = static_cast<std::int32_t>(root);
       const Point& old = e == 0 ? arc.points.front() : arc.points.back();
-      if (!(old == nodes_[root].point)) move_end(arc, e, nodes_[root].point);
+      if (!(old == nodes_[root].point)) move_end(arc, e, nodes_[root]);
     }
   }
 }
@@ -253,8 +267,8 @@ void Simplifier::merge_bundle(const std::vector<std::size_t>& bundle, std::vecto
     if (twin == left.end()) {
       left.push_back(a);
     } else {
-      removed_.points.push_back(arcs_[a].points[arcs_[a].points.size() / 2]);
-      removed_.length_voxels += length(arcs_[a].points) + length(arcs_[*twin].points);
+      note_removed(arcs_[a], arcs_[a].points.size() / 2);
+      if (is_line(arcs_[*twin].labels)) removed_.length_voxels += length(arcs_[*twin].points);
       left.erase(twin);
     }
   }
@@ -305,8 +319,7 @@ void Simplifier::remove_short_closed_arcs() {
   for (std::size_t a = 0; a < arcs_.size(); ++a) {
     if (!arcs_[a].is_closed() || length(arcs_[a].points) >= kShortLoop) continue;
     is_removed[a] = true;
-    removed_.points.push_back(arcs_[a].points.front());
-    removed_.length_voxels += length(arcs_[a].points);
+    note_removed(arcs_[a], 0);
   }
   erase(is_removed);
 }
@@ -317,7 +330,7 @@ void Simplifier::add_contracted() {
   for (std::size_t a = 0; a < arcs_.size(); ++a)
     for (std::size_t e = 0; e < 2 && !arcs_[a].is_closed(); ++e) arcs_at[end(a, e)].push_back(a);
   for (const Contracted& each : contracted_)
-    if (std::ranges::none_of(arcs_at[each.node], [&](std::size_t a) {
+    if (is_line(each.labels) && std::ranges::none_of(arcs_at[each.node], [&](std::size_t a) {
           return std::ranges::includes(arcs_[a].labels, each.labels);
         }))
       removed_.length_voxels += each.length;
@@ -325,6 +338,6 @@ void Simplifier::add_contracted() {
 
 }  // namespace
 
-RemovedCurves simplify(LineGraph& graph) { return Simplifier(graph)(); }
+RemovedCurves simplify(LineGraph& graph, bool leaves_sides) { return Simplifier(graph, leaves_sides)(); }
 
 }  // namespace podm

@@ -49,8 +49,9 @@ LineGraph join_pieces(std::vector<Pieces>& parts, std::size_t threads);
 ///   labels. Pairs of them with the same labels are removed.
 /// - An arc from a node to itself is removed if it stays within kShortArc of it.
 /// - A node of two arcs with its sides and the same labels vanishes.
-/// Closed arcs below kShortLoop are removed at the end. Returns a point of each removed pair and closed arc,
-/// and the length of all arcs that were contracted or removed, where no arc of their labels is left.
-RemovedCurves simplify(LineGraph& graph);
+/// Closed arcs below kShortLoop are removed at the end. Returns a point of each removed pair and closed arc
+/// of lines, and the length of all their arcs that were contracted or removed, where no arc of their labels
+/// is left. With `leaves_sides`, arcs whose ends move along a side of the box still leave the side there.
+RemovedCurves simplify(LineGraph& graph, bool leaves_sides);
 
 }  // namespace podm

@@ -2,7 +2,9 @@
 // working frame.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "geometry/point.h"
@@ -10,6 +12,9 @@
 #include "podm/label_image.h"
 
 namespace podm {
+
+/// A line is a curve along which at least this many labels meet. Curves of two are on sides of the box.
+inline constexpr std::size_t kLabelsOfLine = 3;
 
 /// A point where arcs end or meet, or a corner of the box.
 struct LineNode {
@@ -46,11 +51,15 @@ struct LineNetwork {
   std::vector<LineArc> arcs;
   std::vector<UndecidedPlace> undecided;  ///< at most one per block and reason, in the order of blocks
 
-  /// Length of curves that were contracted to nodes or removed, in voxels along each axis.
+  /// Length of lines that were contracted to nodes or removed, in voxels along each axis.
   double removed_voxels = 0;
   bool is_whole = true;  ///< false: tracing ended early, and nothing is known
 
   bool is_empty() const { return arcs.empty(); }
 };
+
+/// The arcs for which is_wanted(arc) holds, and the nodes at their ends, in the same order; all else as in
+/// the whole network.
+LineNetwork part_of(const LineNetwork& network, const std::function<bool(const LineArc&)>& is_wanted);
 
 }  // namespace podm

@@ -25,12 +25,19 @@ class Lines {
   const LineNetwork& network() const { return network_; }
   std::size_t num_arcs() const { return arcs_.size(); }
   const Arc& arc(std::size_t a) const { return arcs_[a]; }
-  /// The line's point near the arc's at a position. None if it is not found.
-  std::optional<Point> exact_point(std::size_t arc, double position) const {
-    return exact_.near(arcs_[arc].point_at(position), network_.arcs[arc].labels);
+  /// The arc's point at a position, in the planes of the arc's sides.
+  SurfacePoint point(std::size_t arc, double position) const {
+    return exact_.on_sides(arcs_[arc].point_at(position), network_.arcs[arc].sides);
   }
-  std::optional<Point> exact_node(std::size_t node) const {
-    return exact_.near(network_.nodes[node].point, network_.nodes[node].labels);
+  SurfacePoint node(std::size_t node) const {
+    return exact_.on_sides(network_.nodes[node].point, network_.nodes[node].sides);
+  }
+  /// The line's point near the arc's at a position, on the same sides. None if it is not found.
+  std::optional<SurfacePoint> exact_point(std::size_t arc, double position) const {
+    return exact_.near(point(arc, position), network_.arcs[arc].labels, ExactPoints::On::kCurve);
+  }
+  std::optional<SurfacePoint> exact_node(std::size_t node) const {
+    return exact_.near(this->node(node), network_.nodes[node].labels, ExactPoints::On::kNode);
   }
 
  private:

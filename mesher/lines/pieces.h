@@ -60,7 +60,7 @@ struct Piece {
   std::uint32_t num_points;  // the ends' points included
 };
 
-/// Curves that are too short or too close to others to be kept.
+/// Lines that are too short or too close to others to be kept.
 struct RemovedCurves {
   std::vector<Point> points;  // one of each
   double length_voxels = 0;   // of all
@@ -72,7 +72,7 @@ struct Pieces {
   std::vector<Point> points;  // of all pieces
   std::vector<Joint> joints;
   std::vector<UndecidedPlace> undecided;  // points in index coordinates
-  double removed_voxels = 0;              // length of curves removed in blocks
+  double removed_voxels = 0;              // length of lines removed in blocks
 };
 
 }  // namespace podm

@@ -23,17 +23,6 @@ constexpr auto kTypeOfSteps = [] {
   return types;
 }();
 
-LatticeRange range_of(const BlockGrid& grid, const Voxel& block) {
-  LatticeRange range;
-  if (!grid.is_box_flat()) return range;
-  const std::array<int, 3> place{block.i, block.j, block.k};
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (place[a] < 0) range.low[a] = kLatticeSteps / 2;
-    if (place[a] == grid.size(a) - 1) range.high[a] = kLatticeSteps / 2;
-  }
-  return range;
-}
-
 Point from_face(const Point& uv, std::size_t axis, double across) {
   std::array<double, 3> f{};
   f[axis] = across;
@@ -237,7 +226,7 @@ void BlockTracer::trace(const Voxel& block, Pieces& pieces) {
   corners_ = grid_.corners(block);
   forms_ = WeightForms(corners_);
   counting_ = counting_slots();
-  range_ = range_of(grid_, block);
+  range_ = grid_.range(block);
   lattice_.sample(forms_);
   if (lattice_.has_three_winners()) find_triangles();
   find_joints_on_faces();

@@ -243,7 +243,7 @@ LineNetwork LineTracer::operator()() {
     removed_voxels_ += part.removed_voxels;
   }
   LineGraph graph = join_pieces(parts_, threads_);
-  const RemovedCurves removed = simplify(graph);
+  const RemovedCurves removed = simplify(graph, options_.has_lines);
   drop_decided(graph);
   list_removed(removed.points);
   removed_voxels_ += removed.length_voxels;

@@ -175,9 +175,10 @@ void SquareTracer::add_chain(const WalkedChain& walked) {
   for (const std::uint16_t e : walked.items)
     if (edges_[e].joint < 0) curve.places.push_back(place_of(edges_[e]));
   const CurvePoints found = curve_points(forms_, range_.box(), curve);
-  for (const Point& uv : found.unconfirmed) unconfirmed_.push_back(in_index_coordinates(uv));
-  for (const Point& uv : found.points) chain.points.push_back(in_index_coordinates(uv));
   chain.labels = labels_of(slots);
+  if (!chain.labels.contains(kBackground))  // otherwise it is no line
+    for (const Point& uv : found.unconfirmed) unconfirmed_.push_back(in_index_coordinates(uv));
+  for (const Point& uv : found.points) chain.points.push_back(in_index_coordinates(uv));
   chains_.chains.push_back(std::move(chain));
 }
 
@@ -188,11 +189,9 @@ void SquareTracer::trace(const BoxSide& side, int p, int q, Pieces& pieces) {
   const Voxel lowest = voxel_on(grid_, side, p, q);
   forms_ = WeightForms(corners_of_square(grid_, side, p, q));
   if (forms_.size() < 2) return;
-  range_ = {};
-  for (std::size_t a = 0; a < 2; ++a) {
-    if (place_[a] < 0) range_.low[a] = kLatticeSteps / 2;
-    if (place_[a] == grid_.size(a == 0 ? side.u() : side.v()) - 1) range_.high[a] = kLatticeSteps / 2;
-  }
+  const LatticeRange of_block = grid_.range(lowest);
+  range_ = {{of_block.low[side.u()], of_block.low[side.v()], 0},
+            {of_block.high[side.u()], of_block.high[side.v()], kLatticeSteps}};
   lattice_.sample(forms_);
   find_edges();
   find_joints();

@@ -32,7 +32,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       rules_(mesh, isosurface, parameters, reads_),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       poor_(mesh.cell_capacity()),
-      min_distance_(parameters.least_spacing_mm(isosurface.box().has_value())),
+      min_distance_(parameters.least_spacing_mm(isosurface.image())),
       self_(self),
       order_(order) {
   if (parameters.lines != nullptr) lines_.emplace(mesh, rules_, operation_, *parameters.lines);
@@ -154,7 +154,8 @@ std::optional<Outcome> Worker<Locks>::split_line() {
     const Outcome outcome = outcome_of(planned);
     return outcome == Outcome::kRejected ? std::nullopt : std::optional(outcome);
   }
-  if (commit(lines_->point(), VertexKind::kLine, Rule::kR0) != Outcome::kCommitted) return std::nullopt;
+  const SurfacePoint& p = lines_->point();
+  if (commit(p, VertexKind::kLine, Rule::kR0, p.sides) != Outcome::kCommitted) return std::nullopt;
   lines_->commit(operation_.inserted());
   return Outcome::kCommitted;
 }
@@ -173,12 +174,12 @@ StepResult Worker<Locks>::plan_beside_lines(const Point& p, CellId start, std::o
 }
 
 template <class Locks>
-VertexId Worker<Locks>::insert_on_line(const Point& p, CellId near) {
+VertexId Worker<Locks>::insert_on_line(const SurfacePoint& p, CellId near) {
   StepResult planned = operation_.plan_insertion(p, cell_with(mesh_, p, near));
   if (planned == StepResult::kDone) planned = plan_r6_removals(p);
   if (planned != StepResult::kDone) operation_.rollback();
   const bool is_inserted =
-      planned == StepResult::kDone && commit(p, VertexKind::kLine, Rule::kR0) == Outcome::kCommitted;
+      planned == StepResult::kDone && commit(p, VertexKind::kLine, Rule::kR0, p.sides) == Outcome::kCommitted;
   return is_inserted ? operation_.inserted() : kNoVertex;
 }
 
@@ -187,6 +188,10 @@ bool Worker<Locks>::insert_sample(const SurfacePoint& z, CellId start, double le
   bool is_near = operation_.plan_insertion(z, start) != StepResult::kDone;
   operation_.for_each_region_vertex_near(
       least_mm * least_mm, [&](VertexId v) { is_near = is_near || is_on_isosurface(mesh_.vertex(v).kind); });
+  if (lines_ && !is_near) {
+    lines_->begin_search();
+    is_near = lines_->is_encroached_by(z);
+  }
   const bool is_planned = !is_near && plan_r6_removals(z) == StepResult::kDone;
   if (!is_planned) operation_.rollback();
   return is_planned && commit(z, VertexKind::kIsosurface, Rule::kR1, z.sides) == Outcome::kCommitted;

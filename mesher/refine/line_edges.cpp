@@ -85,18 +85,19 @@ double LineEdges::split_position(const LineEdge& edge) const {
 }
 
 LinePoint LineEdges::point_at(std::size_t arc, double position) const {
-  const std::optional<Point> exact = lines_.exact_point(arc, position);
-  return {exact ? *exact : lines_.arc(arc).point_at(position), position, exact.has_value()};
+  const std::optional<SurfacePoint> exact = lines_.exact_point(arc, position);
+  return {exact ? *exact : lines_.point(arc, position), position, exact.has_value()};
 }
 
-// Near nodes that stand for several the arc is not exactly on its line, and the exact point may be far.
+// Near nodes that stand for several the arc is not exactly on its line, and the exact point may be far. Both
+// ends are in the planes of the arc's sides, and so is their middle, to the bit.
 LinePoint LineEdges::split_point_in_ball(const LineEdge& edge, const Point& a, const Point& b) const {
   const auto is_in_ball = [&](const Point& p) { return is_in_diametral_ball(p, a, b); };
   LinePoint at = split_point(edge);
   if (is_in_ball(at.point)) return at;
   at.is_exact = false;
-  at.point = lines_.arc(edge.arc).point_at(at.position);
-  if (!is_in_ball(at.point)) at.point = a + 0.5 * (b - a);
+  at.point = lines_.point(edge.arc, at.position);
+  if (!is_in_ball(at.point)) at.point = {a + 0.5 * (b - a), at.point.sides};
   return at;
 }
 

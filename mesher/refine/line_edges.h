@@ -50,7 +50,7 @@ struct LineEdge {
 
 /// A new vertex for an edge.
 struct LinePoint {
-  Point point;
+  SurfacePoint point;
   double position;
   bool is_exact;
 };

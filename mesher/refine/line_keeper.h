@@ -53,7 +53,7 @@ class LineKeeper {
   /// otherwise. An earlier plan must have been rolled back. kAtFloor: there is no such vertex. The caller
   /// must roll back unless the result is kDone.
   StepResult plan_split();
-  const Point& point() const { return split_.point; }
+  const SurfacePoint& point() const { return split_.point; }
   /// Writes the split to the table. The planned vertex has been inserted.
   void commit(VertexId inserted) { edges_.split(*edge_, inserted, split_); }
   LineEdges& edges() { return edges_; }
@@ -200,9 +200,11 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(const LineEdge
     for (const auto& [from, to] : {std::pair(around_edge_[i], next), std::pair(next, around_edge_[i])}) {
       const auto crossing = rules_.first_crossing(mesh_.cell(from).center, mesh_.cell(to).center);
       if (!crossing || !is_missing(crossing->beyond)) continue;
-      if (squared_distance(crossing->point, end) < edges_.floor_mm() * edges_.floor_mm()) continue;
-      for (const CellId start : {from, to})
-        if (mesh_.is_in_conflict(start, crossing->point)) return SurfaceCenter{{crossing->point}, start};
+      for (const SurfacePoint& z :
+           {rules_.near_sides(crossing->point, distance(crossing->point, end)), crossing->point}) {
+        if (squared_distance(z, end) < edges_.floor_mm() * edges_.floor_mm()) continue;
+        if (const auto sample = rules_.in_conflict(z, from, to)) return sample;
+      }
     }
   }
   return std::nullopt;
@@ -213,7 +215,7 @@ StepResult LineKeeper<Locks>::plan_split() {
   for (int transfer = 0; transfer < kMostTransfers; ++transfer) {
     split_ = edges_.split_point_in_ball(*edge_, mesh_.point(edge_->first), mesh_.point(edge_->last));
     if (!split_.is_exact) {
-      const std::optional<Point> settled = rules_.settled(split_.point, edges_.delta_mm());
+      const std::optional<SurfacePoint> settled = rules_.settled_on_sides(split_.point, edges_.delta_mm());
       if (!settled || !is_in_ball(*settled, *edge_)) return StepResult::kAtFloor;
       split_.point = *settled;
     }

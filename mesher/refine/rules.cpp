@@ -159,6 +159,17 @@ std::optional<SurfacePoint> RulesOn<Cells>::settled(const Point& p, double radiu
   return std::optional(ask([&](const auto& oracle) { return oracle.polished(*near, p); }));
 }
 
+template <class Cells>
+std::optional<SurfacePoint> RulesOn<Cells>::settled_on_sides(const SurfacePoint& p, double radius_mm) const {
+  if (p.sides == 0) return settled(p, radius_mm);
+  return ask_either([&](const auto& oracle) { return oracle.on_curve_of_box(p, p.sides); });
+}
+
+template <class Cells>
+SurfacePoint RulesOn<Cells>::near_sides(const SurfacePoint& z, double radius_mm) const {
+  return has_box_ ? moved_to_sides(z, kToSide * radius_mm) : z;
+}
+
 // True if a vertex opposite to one of the cell's facets covers z. The caller would find this vertex, or one
 // nearer to z, among the cavity's vertices, but at the cost of the cavity.
 template <class Cells>
@@ -276,12 +287,29 @@ template <class Cells>
 std::optional<SurfaceCenter> RulesOn<Cells>::center_in_box(const Examination& t, CellId neighbor,
                                                            unsigned facet) const {
   if (const auto on_side = center_on_side(t, neighbor, facet)) return on_side;
-  if (!needs_sample(t.cell, facet) || !is_restricted(t, neighbor)) return std::nullopt;
+  const bool needs = needs_sample(t.cell, facet);
+  if (!needs && !has_foreign_sample(t, neighbor, facet)) return std::nullopt;
+  if (!is_restricted(t, neighbor)) return std::nullopt;
   const std::optional<SurfacePoint> z = change_on_dual_edge(t, neighbor);
-  if (!z) return std::nullopt;
+  if (!z || (!needs && reach_at(*z, 1, t.cell, facet) < parameters_.lines->floor_mm())) return std::nullopt;
   const SurfacePoint moved = moved_to_sides(*z, reach_at(*z, kToSide, t.cell, facet));
   if (const auto found = in_conflict(moved, t.cell, neighbor)) return found;
   return in_conflict(*z, t.cell, neighbor);
+}
+
+// True if the facet is between two labels that do not meet at a sample of it on a side.
+template <class Cells>
+bool RulesOn<Cells>::has_foreign_sample(const Examination& t, CellId neighbor, unsigned facet) const {
+  if (parameters_.lines == nullptr || t.label == kBackground) return false;
+  const LabelIndex other = label_of(neighbor);
+  if (other == kBackground || other == t.label) return false;
+  const auto& vertices = mesh_.cell(t.cell).vertices;
+  return std::ranges::any_of(kFacetVertices[facet], [&](int i) {
+    const Vertex& v = mesh_.vertex(vertices[static_cast<unsigned>(i)]);
+    if (v.kind != VertexKind::kIsosurface || v.sides == 0) return false;
+    const SurfacePoint z{v.point, v.sides};
+    return !ask_either([&](const auto& oracle) { return oracle.is_between(z, t.label, other); });
+  });
 }
 
 template <class Cells>
@@ -351,7 +379,7 @@ SideMask RulesOn<Cells>::common_sides(CellId c, unsigned facet) const {
 template <class Cells>
 auto RulesOn<Cells>::first_crossing(const Point& from, const Point& to) const -> std::optional<Crossing> {
   constexpr double kBeyond = 1e-6;  // of the way
-  const std::optional<Point> z =
+  const std::optional<SurfacePoint> z =
       ask([&](const auto& oracle) { return oracle.segment_intersection(from, to); });
   if (!z) return std::nullopt;
   return Crossing{*z, ask([&](const auto& oracle) { return oracle.label_at(*z + kBeyond * (to - from)); })};

@@ -96,8 +96,24 @@
 //   and at facets with a free vertex, may shorten m in this way. No facet away from lines has these edges as
 //   sides. Not proved is that lines are kept. Where two are nearer to each other than about f, edges are
 //   lost.
+//
+// Lines in a flat box. Where an interface meets a side, three labels meet along a line in the side: those of
+// the interface, and the background outside. Vertices on it are on that side. Edges of the box, and the
+// curves where an interface with background meets a side, have two labels. They are no lines: the bound of 30
+// degrees holds beside them. Their samples come after those of lines, and leave out the balls of their edges.
+//   R3 also applies to a facet between two labels that has a sample of a side where they do not meet, if R3's
+//   ball has a radius of f or more: three labels would meet along an edge of the facet, away from lines.
+//   Termination. R0's points between labels move to sides as R3's points do, and still keep f. R3's points
+//   for samples of other labels keep f / 2 from all vertices. So there are finitely many of both. From the
+//   last one on, the spacing is that of a flat box, where m is what they have left. The planes are reached. A
+//   vertex a of a line may be as near to a side as R0 splits. Within half a voxel of the side labels do not
+//   change along the axis: the line stands at right angles to the plane, and a lies above its end n. A point
+//   z of the plane is then nearer to n than to a. So a is no vertex of a facet that leaves at z: the ball of
+//   R3 around z through a would not be empty. This needs n to be a vertex, and the exact end of its line.
+//   Where n stands for several nodes, the floor of the spacing counts.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <memory>
 #include <optional>
@@ -119,6 +135,9 @@ inline constexpr double kMargin = 1e-9;  // relative
 inline constexpr double kSpacingFloor = 0.1;
 /// The same with a flat box.
 inline constexpr double kSpacingFloorOfBox = 0.02;
+/// With a flat box and lines the floor is at most this share of the shortest side of a voxel: lines make
+/// small cells where they end at the sides, however large s is.
+inline constexpr double kFloorOverVoxel = 0.1;
 
 enum class Rule { kR1, kR2, kR3, kR4, kR5, kR0 };  // positions in Counters::insertions_by_rule
 
@@ -134,8 +153,11 @@ struct Parameters {
   std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta is the same everywhere
   LineEdges* lines = nullptr;                          // null: no lines are kept
   /// Insertions nearer to a vertex are refused.
-  double least_spacing_mm(bool is_box_flat) const {
-    return (is_box_flat ? kSpacingFloorOfBox : kSpacingFloor) * spacing_mm;
+  double least_spacing_mm(const LabelImage& image) const {
+    if (!image.is_box_flat) return kSpacingFloor * spacing_mm;
+    const double floor_mm = kSpacingFloorOfBox * spacing_mm;
+    return lines == nullptr ? floor_mm
+                            : std::min(floor_mm, kFloorOverVoxel * std::ranges::min(image.spacing));
   }
 };
 
@@ -193,6 +215,12 @@ class RulesOn {
   double squared_reach_of_r6() const { return squared_two_delta_; }
   /// Returns the isosurface point nearest to p, if within `radius_mm`.
   std::optional<SurfacePoint> settled(const Point& p, double radius_mm) const;
+  /// The same. A point on sides of a flat box stays there: it moves at most half a voxel, to where an
+  /// interface or an edge of the box meets them.
+  std::optional<SurfacePoint> settled_on_sides(const SurfacePoint& p, double radius_mm) const;
+  /// Moves a point of the isosurface onto sides that are near enough for R3, whose empty ball around the
+  /// point has this radius.
+  SurfacePoint near_sides(const SurfacePoint& z, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const {
     return search_all_facets(t).center;
@@ -205,10 +233,12 @@ class RulesOn {
   /// The first point on the way from one cell's center to another's where the label changes, and the label
   /// beyond it.
   struct Crossing {
-    Point point;
+    SurfacePoint point;
     LabelIndex beyond;
   };
   std::optional<Crossing> first_crossing(const Point& from, const Point& to) const;
+  /// The point with one of two neighboring cells that is in conflict with it.
+  std::optional<SurfaceCenter> in_conflict(const SurfacePoint& z, CellId c, CellId neighbor) const;
   /// Returns R4 or R5 if it applies; both insert the circumcenter.
   std::optional<Rule> volume_rule(const Examination& t) const;
   /// The conditions of R4 and R5 for a cell inside the object.
@@ -259,7 +289,6 @@ class RulesOn {
   std::optional<SurfaceCenter> surface_center(const Examination& t, CellId neighbor) const;
   std::optional<SurfaceCenter> center_in_box(const Examination& t, CellId neighbor, unsigned facet) const;
   std::optional<SurfaceCenter> center_on_side(const Examination& t, CellId neighbor, unsigned facet) const;
-  std::optional<SurfaceCenter> in_conflict(const SurfacePoint& z, CellId c, CellId neighbor) const;
   [[gnu::noinline]] SurfacePoint moved_to_sides(const SurfacePoint& z, double reach) const;
   SideMask common_sides(CellId c, unsigned facet) const;
   double reach_at(const Point& z, double share, CellId c, unsigned facet) const;
@@ -272,6 +301,7 @@ class RulesOn {
   [[gnu::noinline]] bool is_covered_by_any(const Cell& cell, const Point& z) const;
   [[gnu::noinline]] std::optional<Point> r2_center_by_place(const Examination& t) const;
   bool needs_sample(CellId c, unsigned facet) const;
+  bool has_foreign_sample(const Examination& t, CellId neighbor, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
 
   Cells& mesh_;

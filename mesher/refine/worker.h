@@ -44,9 +44,9 @@ class Worker {
   }
   /// Inserts a vertex on a line, as R0 does, while no other worker runs. `near` is a living cell near it.
   /// Returns kNoVertex if another vertex is too near.
-  VertexId insert_on_line(const Point& p, CellId near);
+  VertexId insert_on_line(const SurfacePoint& p, CellId near);
   /// Inserts a sample of the isosurface in the ball of the cell `start`, with R6, while no other worker runs.
-  /// Returns false if an isosurface vertex is within `least_mm`.
+  /// Returns false if an isosurface vertex is within `least_mm`, or if an edge of a line would be split.
   bool insert_sample(const SurfacePoint& z, CellId start, double least_mm);
   /// The cells that the last insertion made.
   const std::vector<CellId>& created() const { return operation_.created(); }

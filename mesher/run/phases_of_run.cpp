@@ -81,7 +81,7 @@ void PhasesOfRun::transform(MeshingReport& report, const MakeIsosurface& make) {
   if (options_.lines.are_kept) trace(weights, report);
   announce("transform", 0, 0);
   const double start_s = seconds_();
-  if (image_.is_box_flat) box_curves_ = traced(weights.get(), {.is_box_flat = true});
+  if (image_.is_box_flat && !lines_) box_curves_ = traced(weights.get(), {.is_box_flat = true});
   isosurface_ = make(std::move(weights));
   object_ = foreground_bounds(image_, loop_threads_);
   asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
@@ -111,7 +111,12 @@ std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) c
 void PhasesOfRun::trace(const std::shared_ptr<const VoxelWeights>& weights, MeshingReport& report) {
   announce("lines", 0, 0);
   const double start_s = seconds_();
-  lines_ = std::make_unique<const Lines>(traced(weights.get(), {.has_lines = true}), image_, weights);
+  LineNetwork network = traced(weights.get(), {.has_lines = true, .is_box_flat = image_.is_box_flat});
+  if (image_.is_box_flat) {
+    box_curves_ = part_of(network, [](const LineArc& arc) { return arc.sides != 0; });
+    network = part_of(network, [](const LineArc& arc) { return arc.labels.size() >= kLabelsOfLine; });
+  }
+  lines_ = std::make_unique<const Lines>(std::move(network), image_, weights);
   report.phases_s["trace"] = seconds_() - start_s;
 }
 

@@ -52,6 +52,34 @@ class Box(PodmTestCase):
                 self.assertTrue(all(record["facets_of_sides"].values()), record["facets_of_sides"])
                 self.assert_exit(run_podm("replay", image, log), 0)
 
+    def test_lines_are_kept_in_every_frame_and_by_every_algorithm(self):
+        for name, frame in FRAMES.items():
+            image = self.image(frame)
+            for algorithm in few((["podm", "--threads", 1], ["podm", "--threads", 2], ["pdr", "--threads", 2],
+                                  ["pdr-podm", "--threads", 2], ["podm", "--smooth", 1, "--threads", 2]), 2):
+                log = self.folder / "run.log"
+                record = self.record_of(image, "--lines", "--algorithm", *algorithm, "--oversubscribe", "--log", log,
+                                        "--verify")
+                self.assertEqual(set(record["verdicts"].values()), {"pass"}, name)
+                self.assertLessEqual({"box", "lines"}, set(record["verdicts"]), name)
+                self.assertEqual(set(record["guarantees"].values()), {0})
+                self.assertAlmostEqual(record["lines"]["kept_mm"], record["lines"]["traced_mm"])
+                self.assert_exit(run_podm("replay", image, log), 0)
+
+    def test_files_have_sides_and_lines(self):
+        image = self.image(FRAMES["parallel"])
+        texts = {"out.msh": (b'"box i-"', b'"label 1|label 2|outside"'), "out.mesh": (b"outside box i-", b"# line "),
+                 "out.inp": (b"NAME=box_i-", b"NSET=label_1-label_2-outside"),
+                 "out.exo": (b"box i-", b"label 1|label 2|outside"), "out.xdmf": (b'Name="side"', b'Name="lines"')}
+        for name, marks in texts.items():
+            self.record_of(image, "--lines", output=name)
+            text = (self.folder / name).read_bytes()
+            for mark in marks:
+                self.assertIn(mark, text, name)
+        self.record_of(image, "--lines")
+        self.assertIn(b"box_side", (self.folder / "out_facets.vtu").read_bytes())
+        self.assertIn(b"line:label 1", (self.folder / "out_lines.vtu").read_bytes())
+
     def test_the_sides_are_named_sets(self):
         image = self.image(FRAMES["parallel"])
         self.record_of(image, output="out.msh")
@@ -95,8 +123,6 @@ class Box(PodmTestCase):
     def test_what_it_refuses(self):
         out = self.folder / "out.vtu"
         self.assert_refused(["mesh", self.image(SHEARED), "-o", out, "--box", "flat"], "--box flat", "sheared")
-        self.assert_refused(["mesh", self.image(FRAMES["parallel"]), "-o", out, "--box", "flat", "--lines"],
-                            "--box flat excludes --lines")
 
 
 if __name__ == "__main__":

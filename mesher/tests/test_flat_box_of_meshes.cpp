@@ -248,6 +248,81 @@ TEST(FlatBoxOfMesh, HoldsForAllAlgorithmsAndOptions) {
   expect_flat(image, mesh_image(image, options));
 }
 
+std::vector<std::array<std::uint32_t, 2>> edges_between(const TetMesh& mesh,
+                                                        const std::vector<LabelIndex>& labels) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::size_t e = 0; e < mesh.lines.edges.size(); ++e)
+    if (mesh.lines.labels_of_line[mesh.lines.line_of_edge[e]] == labels) edges.push_back(mesh.lines.edges[e]);
+  return edges;
+}
+
+// The interface of the block meets the sides along one closed line.
+TEST(FlatBoxOfMesh, HasLinesWhereAnInterfaceMeetsItsSides) {
+  const LabelImage image = filled_block();
+  for (const double smoothing_mm : {0.0, 1.2}) {
+    MeshingOptions options = flat(2.5, 1.2);
+    options.lines.are_kept = true;
+    options.smoothing_mm = smoothing_mm;
+    const MeshingResult made = mesh_image(image, options);
+    expect_flat(image, made);
+    EXPECT_TRUE(made.report.lines->is_claimed());
+    EXPECT_EQ(made.report.lines->stray_mm, 0);
+    const TetMesh& mesh = made.mesh;
+    const auto edges = edges_between(mesh, {0, 1, 2});
+    EXPECT_EQ(edges.size(), mesh.lines.edges.size());
+    EXPECT_GT(edges.size(), 25u);
+    std::map<std::uint32_t, int> degree;
+    for (const auto& edge : edges) {
+      EXPECT_NE(mesh.vertex_sides[edge[0]] & mesh.vertex_sides[edge[1]], 0);
+      for (const std::uint32_t v : edge) ++degree[v];
+    }
+    for (const auto& [v, count] : degree) EXPECT_EQ(count, 2);
+    EXPECT_EQ(degree.size(), edges.size());
+  }
+}
+
+// A line of three labels inside ends at two sides, in vertices of three lines on each side.
+TEST(FlatBoxOfMesh, HasLinesThatEndAtItsSides) {
+  const LabelImage image = flat(make_image({11, 12, 10}, {1, 1, 1}, 3, [](int i, int j, int k) {
+    const double x = i - 4.7 - 0.2 * k, y = j - 6.2 + 0.1 * k;
+    return x < 0 ? 1 : y < 0.3 * x ? 2 : 3;
+  }));
+  MeshingOptions options = flat(2.5, 1.2);
+  options.lines.are_kept = true;
+  const MeshingResult made = mesh_image(image, options);
+  expect_flat(image, made);
+  EXPECT_TRUE(made.report.lines->is_claimed());
+  const TetMesh& mesh = made.mesh;
+  std::map<std::uint32_t, int> inside, on_sides;
+  for (std::size_t e = 0; e < mesh.lines.edges.size(); ++e) {
+    const bool is_inside = mesh.lines.labels_of_line[mesh.lines.line_of_edge[e]].front() != kBackground;
+    for (const std::uint32_t v : mesh.lines.edges[e]) ++(is_inside ? inside : on_sides)[v];
+  }
+  int num_ends = 0;
+  for (const auto& [v, count] : inside) {
+    if (count == 2) continue;
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(std::popcount(mesh.vertex_sides[v]), 1);
+    EXPECT_EQ(on_sides[v], 3);
+    ++num_ends;
+  }
+  EXPECT_EQ(num_ends, 2);
+}
+
+TEST(FlatBoxOfMesh, HoldsWithLinesForAllAlgorithms) {
+  const LabelImage image = cut_balls();
+  MeshingOptions options = flat(2.5, 1.3);
+  options.lines.are_kept = true;
+  for (const Algorithm algorithm :
+       {Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm, Algorithm::kPodmHome}) {
+    options.algorithm = algorithm;
+    options.team.threads = 2;
+    expect_flat(image, mesh_image(image, options));
+  }
+  options.min_dihedral_deg = 10;
+  expect_flat(image, mesh_image(image, options));
+}
+
 TEST(FlatBoxOfMesh, HoldsInALayerOfOneVoxel) {
   const LabelImage image = flat(
       make_image({14, 11, 1}, {1, 1, 2}, 2, [](int i, int j, int) { return i + j > 4 ? 1 + (i > 7) : 0; }));
@@ -261,8 +336,11 @@ TEST(FlatBoxOfMesh, HoldsForNoise) {
     std::mt19937 random(seed);
     const LabelImage image = flat(make_image({7, 6, 5}, {1, 1 + 0.1 * (seed % 4), 1 - 0.2 * (seed % 3)}, 3,
                                              [&](int, int, int) { return static_cast<int>(random() % 4); }));
-    const MeshingResult made = mesh_image(image, flat(2, 0.6));
-    EXPECT_EQ(made.report.guarantees.off_sides, 0) << seed;
+    for (const bool has_lines : {false, true}) {
+      MeshingOptions options = flat(2, 0.6);
+      options.lines.are_kept = has_lines;
+      EXPECT_EQ(mesh_image(image, options).report.guarantees.off_sides, 0) << seed;
+    }
   }
 }
 

@@ -17,7 +17,7 @@ import stress
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 SEEDS = range(1, 401)
-SHAPES = [["--lines"], ["--box", "flat"], ["--thin", "keep"]]
+SHAPES = [["--lines"], ["--box", "flat"], ["--lines", "--box", "flat"], ["--thin", "keep"]]
 
 
 class Draws(unittest.TestCase):
@@ -125,6 +125,11 @@ class Judge(unittest.TestCase):
         self.assert_fault(1, ["time limit"], stop_reason="memory limit")
         self.assert_fault(1, ["time limit"], stop_reason="time limit",
                           verdicts=record()["verdicts"] | {"delaunay": "fail"})
+
+    def test_large_labels_may_lack_a_cell_if_a_run_ends_early(self):
+        failing = {"stop_reason": "element limit", "verdicts": record()["verdicts"] | {"labels": "fail"}}
+        self.judge(1, ["element limit"], guarantees={"missing_labels": 1}, **failing)
+        self.assert_fault(1, ["element limit"], guarantees={"missing_labels": 0}, **failing)
 
     def test_promised_lines_are_there_even_if_a_run_ends_early(self):
         self.assert_fault(1, ["time limit"], stop_reason="time limit",

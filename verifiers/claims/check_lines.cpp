@@ -4,8 +4,8 @@
 //               function meet lie within b of an edge of the mesh around which three of these labels meet.
 //               Second, 99.9 % of the edges around which three or more labels meet, by length, lie within b
 //               of a point of the image where three of their labels meet. The background is a label, also
-//               beyond the grid. An edge is therefore between the right labels wherever it is near the line
-//               of others.
+//               beyond the grid, and outside the sides of a flat box. An edge is therefore between the right
+//               labels wherever it is near the line of others.
 //   Rests on    Boxes that hold the lines of the image (lines_of_image.h), of at most 0.046 voxels. Half of
 //               the diagonal of such a box is added to b. Labels that are greatest at its corners are taken
 //               to meet in it; between two corners one of them may be thinner than the box. Boxes in which

@@ -6,7 +6,7 @@ The center of voxel (0, 0, 0) is at (0.5, 0.5, 0.5): the sides of the box have w
 import numpy as np
 
 from inr_image import write_inr
-from line_mutants import OPERATORS
+from line_mutants import OPERATORS, promising, quadrants
 from mutants import Case, Mutant, operator
 from topology_mutants import mesh_of
 
@@ -113,3 +113,23 @@ def corner_blunt(fixture):
     """a corner of the box that is inside; harmless: the vertex before it on the edge is moved as far"""
     return Mutant(case(fixture, moved((6, 5, 4), (-0.3, -0.3, -0.3))), case(fixture, moved((6, 5, 3), (0, 0, -0.3))),
                   ("structure",))
+
+
+@operator("lines")
+def line_in_a_side_moved(fixture):
+    """a vertex of a line in a side of the box moved across the line, in the plane; harmless: along it"""
+    def lines(by):
+        mutant = case(fixture, moved((6, 2, 0), by), quadrants(), quadrants())
+        mutant.mesh.comments = promising(1)
+        return mutant
+    return Mutant(lines((0.9, 0, 0)), lines((0, 0.9, 0)), ("surface",))
+
+
+@operator("lines")
+def line_in_a_side_missing(fixture):
+    """a block of two labels of which the mesh has one; harmless: it has both"""
+    def lines(voxels):
+        mutant = case(fixture, None, voxels, block())
+        mutant.mesh.comments = promising(1)
+        return mutant
+    return Mutant(lines(np.ones_like(block())), lines(block()), ("structure", "surface", "box"))

@@ -22,6 +22,7 @@
 #include "replay/replay.h"
 #include "run/extract_lines.h"
 #include "run/extract_mesh.h"
+#include "run/facets_of_sides.h"
 #include "run/measure_quality.h"
 #include "smoothing/smooth_interfaces.h"
 #include "tests/images.h"
@@ -35,12 +36,18 @@ struct LineScene {
   const char* name;
   std::function<LabelImage()> make;
   double smoothing_mm = 0;
+  bool is_box_flat = false;
   friend std::ostream& operator<<(std::ostream& out, const LineScene& x) { return out << x.name; }
 };
 
 LabelImage crystal(unsigned num_grains, bool has_margin) {
   Random random(7 + num_grains);
   return polycrystal(random, {18, 18, 18}, {1, 1, 1}, num_grains, has_margin);
+}
+
+LabelImage flat(LabelImage image) {
+  image.is_box_flat = true;
+  return image;
 }
 
 const std::vector<LineScene> kLineScenes{
@@ -51,6 +58,8 @@ const std::vector<LineScene> kLineScenes{
        return sectors({16, 16, 16}, 5, {7.3, 7.6, 7.2}, {0.2, 0.3, 1});
      }},
     {"smoothed_grains", [] { return crystal(10, false); }, 1},
+    {"grains_in_a_flat_box", [] { return flat(crystal(10, false)); }, 0, true},
+    {"smoothed_grains_in_a_flat_box", [] { return flat(crystal(14, false)); }, 1, true},
 };
 
 struct LineMethod {
@@ -93,7 +102,8 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
         .cell_capacity = 1 << 22,
         .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(8, 165)) : std::nullopt,
         .lines = &lines_,
-        .lines_delta_mm = 1.25 * kLineDelta};
+        .lines_delta_mm = 1.25 * kLineDelta,
+        .box_curves = scene_.is_box_flat ? &network_ : nullptr};
     const Team team{.executor = method.executor,
                     .coordination = {.num_workers = method.num_workers},
                     .num_nodes = method.num_nodes,
@@ -107,7 +117,8 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
     log_.finish({.box = {low.x, low.y, low.z, high.x, high.y, high.z},
                  .image_sha256 = "",
                  .space = "RAS",
-                 .mesh_sha256 = sha256});
+                 .mesh_sha256 = sha256,
+                 .is_box_flat = scene_.is_box_flat});
     log_.publish();
     return read_operation_log(log_path());
   }
@@ -122,7 +133,10 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
   std::shared_ptr<const VoxelWeights> weights_ = weights_of(image_, scene_.smoothing_mm, 1);
   Isosurface isosurface_{image_, 1, weights_};
   SizeField sizes_{std::vector<double>(image_.labels.size(), kLineRadius)};
-  Lines lines_{trace_lines(image_, weights_.get(), {.has_lines = true, .threads = 1}), image_, weights_};
+  LineNetwork network_ = trace_lines(image_, weights_.get(),
+                                     {.has_lines = true, .is_box_flat = scene_.is_box_flat, .threads = 1});
+  Lines lines_{part_of(network_, [](const LineArc& arc) { return arc.labels.size() >= kLabelsOfLine; }),
+               image_, weights_};
   OperationLogWriter log_;
   Refinement refinement_;
 };
@@ -167,13 +181,38 @@ TEST_P(MeshWithLines, HasTheLinesAsEdgesAndKeepsTheBoundsBesideThem) {
 
 // A vertex at a node may stand for several nodes. All others are where three labels meet.
 TEST_P(MeshWithLines, HasItsVerticesOnTheLinesExactly) {
-  const LabelFunction label(image_, weights_.get(), false);
+  const LabelFunction label(image_, weights_.get(), scene_.is_box_flat);
   const Mesh& mesh = *refinement_.mesh;
   std::uint64_t inexact = 0;
-  for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
-    inexact +=
-        mesh.vertex(v).kind == VertexKind::kLine && label.labels_around(mesh.point(v), 1e-3).size() < 3;
+  for (VertexId v = 0; v < mesh.vertex_bound(); ++v) {
+    if (mesh.vertex(v).kind != VertexKind::kLine) continue;
+    std::set<LabelIndex> seen = label.labels_around(mesh.point(v), 1e-3);
+    if (mesh.vertex(v).sides != 0) seen.insert(kBackground);  // outside
+    inexact += seen.size() < 3;
+  }
   EXPECT_LE(inexact, refinement_.line_edges->num_inexact + 4 * lines_.network().nodes.size() / 100);
+}
+
+// The sides of a vertex are those whose planes it is in. Where three labels meet along an edge and one of
+// them is only outside, the edge is in a side.
+TEST_P(MeshWithLines, HasItsLinesInTheSidesOfAFlatBox) {
+  if (!scene_.is_box_flat) return;
+  const BoxPlanes& box = *isosurface_.box();
+  MeshingReport report;
+  const TetMesh mesh = mesh_of(*refinement_.mesh, report);
+  std::size_t num_on_sides = 0;
+  for (std::size_t e = 0; e < mesh.lines.edges.size(); ++e) {
+    const auto& [a, b] = mesh.lines.edges[e];
+    for (const std::uint32_t v : {a, b}) {
+      const Point p{mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]};
+      EXPECT_EQ(box.clamped(p).sides, mesh.vertex_sides[v]);
+    }
+    if (mesh.lines.labels_of_line[mesh.lines.line_of_edge[e]].front() != kBackground) continue;
+    EXPECT_NE(mesh.vertex_sides[a] & mesh.vertex_sides[b], 0) << "grains fill the image";
+    ++num_on_sides;
+  }
+  EXPECT_GT(num_on_sides, 100u);
+  EXPECT_EQ(count_facets_off_sides(*refinement_.mesh, isosurface_, 1), 0u);
 }
 
 // R6 removes circumcenter vertices only, and R7 moves only these and samples of the isosurface. A move is
@@ -184,7 +223,7 @@ TEST_P(MeshWithLines, HasNoVertexOnALineThatWasRemovedOrMoved) {
   auto removed = log.all.removed.begin();
   std::size_t num_moved = 0;
   for (const LoggedOperation& operation : log.all.operations) {
-    auto kind = static_cast<VertexKind>(operation.kind);
+    auto kind = static_cast<VertexKind>(operation.kind % (1u << kSidesInLog));
     for (std::uint32_t i = 0; i < operation.num_removed; ++i) {
       const VertexKind old = kinds.extract(*removed++).mapped();
       EXPECT_NE(old, VertexKind::kLine);

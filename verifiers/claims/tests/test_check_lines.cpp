@@ -42,6 +42,14 @@ double apart(const Point& a, const Point& b) {
   return std::max({std::fabs(a[0] - b[0]), std::fabs(a[1] - b[1]), std::fabs(a[2] - b[2])});
 }
 
+Image flat_image(const LabelOf& label) {
+  Image image = make_image(kBlockSize, kUnitAffine, label);
+  image.is_box_flat = true;
+  return image;
+}
+
+std::uint32_t two_halves(int i, int, int) { return i < 6 ? 1 : 2; }
+
 // Inside the block the weights are 1-x, x(1-y) and xy: they are equal at x = 2/3, y = 1/2.
 TEST(LinesOfImage, LieWhereThreeWeightsAreEqual) {
   const Image image = make_image(kBlockSize, kUnitAffine, three_sectors);
@@ -58,6 +66,24 @@ TEST(LinesOfImage, LieWhereThreeWeightsAreEqual) {
   }
   EXPECT_GT(num_inner, 60);
   EXPECT_TRUE(std::all_of(is_met.begin(), is_met.end(), [](bool met) { return met; }));
+}
+
+// Two labels fill the box. They meet the outside in a closed line around it, in the planes of four sides.
+TEST(LinesOfImage, LieInThePlanesOfAFlatBox) {
+  std::array<std::size_t, 4> num_on_side{};
+  for (const LinePoint& point : points_of(flat_image(two_halves))) {
+    EXPECT_EQ(point.labels, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_NEAR(point.voxels[0], 5.5, side_of_floor_voxels());
+    std::size_t num_sides = 0;
+    for (std::size_t side = 0; side < 4; ++side) {
+      const std::size_t axis = 1 + side / 2;
+      if (point.voxels[axis] != (side % 2 == 0 ? -0.5 : kBlockSize[axis] - 0.5)) continue;
+      ++num_sides;
+      ++num_on_side[side];
+    }
+    EXPECT_GE(num_sides, 1U);
+  }
+  for (const std::size_t count : num_on_side) EXPECT_GT(count, 60U);
 }
 
 TEST(LinesOfImage, HaveTheirLabelsAround) {
@@ -154,6 +180,19 @@ TEST(Lines, RefutesAMeshThatLacksALine) {
   EXPECT_EQ(result.verdict, Verdict::kFail);
   EXPECT_LT(share(result, "image_to_mesh"), 0.9);
   EXPECT_FALSE(result.worst.empty());
+}
+
+TEST(Lines, AreJudgedInTheSidesOfAFlatBox) {
+  const Image halves = flat_image(two_halves), sectors = flat_image(three_sectors);
+  Mesh mesh = kuhn_mesh(halves);
+  EXPECT_EQ(lines_of(mesh, halves, 0.2).verdict, Verdict::kPass);
+  EXPECT_EQ(lines_of(kuhn_mesh(sectors), sectors, 1).verdict, Verdict::kPass);
+  EXPECT_EQ(lines_of(mesh, sectors, 1).verdict, Verdict::kFail) << "the line inside and its ends are missing";
+  EXPECT_EQ(lines_of(kuhn_mesh(sectors), halves, 1).verdict, Verdict::kFail);
+  const Mesh beside = kuhn_mesh(flat_image([](int i, int, int) { return i < 7 ? 1 : 2; }));
+  EXPECT_EQ(lines_of(beside, halves, 1).verdict, Verdict::kFail);
+  for (LabelValue& label : mesh.cell_labels) label = 1;
+  EXPECT_EQ(lines_of(mesh, halves, 1).verdict, Verdict::kFail);
 }
 
 TEST(Lines, RefutesAMeshWithALineThatTheImageLacks) {
