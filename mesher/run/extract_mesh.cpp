@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/working_frame.h"
+#include "run/delaunay_when_turned.h"
 #include "run/facets_of_sides.h"
 #include "run/mend_turned_cells.h"
 #include "runtime/huge_array.h"
@@ -196,16 +197,10 @@ class Extractor {
       out_ids_[v] = static_cast<std::uint32_t>(at);
       if (!is_on_isosurface(mesh_.vertex(v).kind)) out_ids_[v] |= kOffIsosurface;
       if (out_.is_box_flat) out_.vertex_sides[at] = mesh_.vertex(v).sides;
-      const Point p = is_turned_ ? turned(mesh_.point(v)) : map(to_world_, mesh_.point(v));
+      const Point p =
+          is_turned_ ? turned(isosurface_.image(), mesh_.point(v)) : map(to_world_, mesh_.point(v));
       out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
     }
-  }
-
-  // Vertices on a side of the box stay within two units in the last place of its plane.
-  Point turned(const Point& p) const {
-    const LabelImage& image = isosurface_.image();
-    const auto& s = image.spacing;
-    return map_accurately(image.voxel_to_ras, {p.x / s[0], p.y / s[1], p.z / s[2]});
   }
 
   void number_vertices_of_cells() {
@@ -276,7 +271,8 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int 
   out.space = space;
   out.is_box_flat = isosurface.image().is_box_flat;
   facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();
-  if (is_turned_for_output(isosurface.image())) mend_turned_cells(out, isosurface.image(), threads);
+  if (is_turned_for_output(isosurface.image()))
+    out.num_mended_by_turning = mend_turned_cells(out, isosurface.image(), threads);
   return out;
 }
 

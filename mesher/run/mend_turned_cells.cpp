@@ -37,7 +37,8 @@ class TurnedCells {
     find_cells_around(inverted);
     find_unit();
     std::ranges::sort(inverted, {}, [&](std::uint32_t c) { return points_of(c); });
-    std::erase_if(inverted, [&](std::uint32_t c) { return is_positive(c) || mend(c); });
+    for (const std::uint32_t c : inverted)
+      if (!is_positive(c)) mend(c);
     return inverted.size();
   }
 
@@ -98,7 +99,7 @@ class TurnedCells {
   }
 
   // The circumradius of a flat cell may become anything. The best move is that with the least circumradius.
-  bool mend(std::uint32_t c) {
+  void mend(std::uint32_t c) {
     std::optional<Move> best;
     for (int doublings = 0; doublings <= kMostDoublings; ++doublings)
       for (const std::uint32_t v : vertices_of(c))
@@ -108,7 +109,6 @@ class TurnedCells {
             if (move && (!best || move->squared_radius < best->squared_radius)) best = move;
           }
     if (best) mesh_.vertices[best->vertex] = best->to;
-    return best.has_value();
   }
 
   struct Move {

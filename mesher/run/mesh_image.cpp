@@ -4,6 +4,7 @@
 #include "algorithms/check_options.h"
 #include "replay/replay.h"
 #include "run/calibrate.h"
+#include "run/delaunay_when_turned.h"
 #include "run/extract_mesh.h"
 #include "run/facets_of_sides.h"
 #include "run/phases_of_run.h"
@@ -32,6 +33,11 @@ class Run {
         count_facets_off_sides(*refinement.mesh, phases_.isosurface(), phases_.loop_threads());
     const auto extract = [&](Space space) {
       MeshLines lines = phases_.extract_lines(refinement, report);
+      if (is_turned_for_output(image_)) {
+        label_cells(*refinement.mesh, phases_.isosurface(), phases_.loop_threads());
+        report.is_delaunay_when_turned =
+            !report.optimization && is_delaunay_when_turned(*refinement.mesh, image_, phases_.loop_threads());
+      }
       result.mesh = extract_mesh(*refinement.mesh, phases_.isosurface(), space, phases_.loop_threads(),
                                  report.guarantees.facet_vertices, {}, std::move(lines));
       refinement.mesh.reset();

@@ -265,7 +265,11 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   const double start_s = seconds_();
   measure_quality(mesh, image_, *size_field_, loop_threads_, report);
   report.phases_s["measure"] += seconds_() - start_s;
-  mesh.is_optimized = report.optimization.has_value() || is_turned_for_output(image_);
+  report.cells_mended_by_turning = mesh.num_mended_by_turning;
+  // Moves of vertices, and the conversion to voxels, come after the test.
+  if (mesh.num_mended_by_turning > 0 || options_.space == Space::kVoxel)
+    report.is_delaunay_when_turned = report.is_delaunay_when_turned ? std::optional(false) : std::nullopt;
+  mesh.is_optimized = report.optimization.has_value() || !report.is_delaunay_when_turned.value_or(true);
   mesh.smoothing_mm = options_.smoothing_mm;
   if (mesh.is_box_flat) report.facets_of_sides = count_facets_of_sides(mesh);
   if (report.topology) mesh.topology_differences = report.topology->differences;

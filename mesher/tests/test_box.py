@@ -48,6 +48,9 @@ class Box(PodmTestCase):
                 record = self.record_of(image, "--algorithm", *algorithm, "--oversubscribe", "--log", log, "--verify")
                 self.assertEqual(record["verdicts"]["box"], "pass", name)
                 self.assertEqual(set(record["verdicts"].values()), {"pass"}, name)
+                self.assertEqual(record["turned"] is not None, name == "oblique")
+                self.assertEqual("delaunay" in record["verdicts"],
+                                 record["turned"] is None or record["turned"]["is_delaunay"])
                 self.assertEqual(set(record["guarantees"].values()), {0})
                 self.assertTrue(all(record["facets_of_sides"].values()), record["facets_of_sides"])
                 self.assert_exit(run_podm("replay", image, log), 0)

@@ -8,6 +8,7 @@
 
 #include "algorithms/check_options.h"
 #include "geometry/affine.h"
+#include "geometry/predicates.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_io.h"
 #include "run/mend_turned_cells.h"
@@ -43,6 +44,11 @@ LabelImage cut_balls() {
     if (std::hypot(i - 13, 1.1 * j - 14, 0.9 * k) < 6) return 2;
     return std::hypot(i - 5.0, 1.1 * j - 5, 0.9 * k - 5) < 7 ? 1 : 0;
   }));
+}
+
+LabelImage small_block(int n) {
+  return flat(make_image({2, n, 1 + n % 2}, {1, 1, 1}, 2,
+                         [&](int i, int j, int) { return j > n / 2 ? 1 : (i + j) % 3; }));
 }
 
 std::set<std::array<std::uint32_t, 2>> edges_on(const TetMesh& mesh, SideMask sides) {
@@ -189,12 +195,50 @@ TEST(FlatBoxOfMesh, HasNoInvertedCellsInAnyFrame) {
   for (const NamedAffine& frame : affines()) {
     if (std::string(frame.name).find("sheared") != std::string::npos) continue;
     for (int n = 2; n < 8; ++n) {
-      LabelImage image = flat(make_image({2, n, 1 + n % 2}, {1, 1, 1}, 2,
-                                         [&](int i, int j, int) { return j > n / 2 ? 1 : (i + j) % 3; }));
+      LabelImage image = small_block(n);
       image.voxel_to_ras = frame.affine;
       EXPECT_EQ(mesh_image(image, flat(0.9, 0.6)).report.guarantees.orientation, 0) << frame.name << n;
     }
   }
+}
+
+// True if no vertex is inside the sphere of a cell, and no cell is inverted.
+bool is_delaunay(const TetMesh& mesh) {
+  const auto point = [&](std::uint32_t v) {
+    return Point{mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]};
+  };
+  return std::ranges::all_of(mesh.cells, [&](const auto& cell) {
+    const Point a = point(cell[0]), b = point(cell[1]), c = point(cell[2]), d = point(cell[3]);
+    if (orientation(a, b, c, d) <= 0) return false;
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+      if (std::ranges::find(cell, v) == cell.end() && in_circumsphere(a, b, c, d, point(v))) return false;
+    return true;
+  });
+}
+
+// In the small blocks many vertices are on one sphere.
+TEST(FlatBoxOfMesh, ClaimsToBeDelaunayInObliqueFramesOnlyIfItIs) {
+  int claimed = 0, unclaimed = 0;
+  const auto judge = [&](LabelImage image, double delta) {
+    for (const NamedAffine& frame : affines()) {
+      if (std::string(frame.name).find("oblique") == std::string::npos) continue;
+      image.voxel_to_ras = frame.affine;
+      for (std::size_t at = 0; at < 12; ++at)
+        if (at % 4 < 3) image.voxel_to_ras[at] *= image.spacing[at % 4];
+      const MeshingResult made = mesh_image(image, flat(2.5 * delta, delta));
+      ASSERT_TRUE(made.report.is_delaunay_when_turned);
+      EXPECT_NE(*made.report.is_delaunay_when_turned, made.mesh.is_optimized);
+      EXPECT_EQ(*made.report.is_delaunay_when_turned, is_delaunay(made.mesh)) << frame.name << delta;
+      ++(made.mesh.is_optimized ? unclaimed : claimed);
+    }
+  };
+  for (const double delta : {0.8, 1.1, 1.5, 2.0, 2.6}) {
+    judge(filled_block(), delta);
+    judge(cut_balls(), delta);
+  }
+  for (int n = 2; n < 10; ++n) judge(small_block(n), 0.6);
+  EXPECT_GT(claimed, 0);
+  EXPECT_GT(unclaimed, 0);
 }
 
 TEST(MendTurnedCells, MakesFlatCellsPositive) {
@@ -204,10 +248,11 @@ TEST(MendTurnedCells, MakesFlatCellsPositive) {
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 1}};
   mesh.vertex_sides.assign(5, 1 << 4);
   mesh.cells = {{0, 1, 2, 3}, {0, 1, 2, 4}};
-  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 1);  // no vertex may leave side k-
-  mesh.vertex_sides[3] = 1 << 0 | 1 << 3;
   const auto before = mesh.vertices;
-  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 0);
+  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 1);
+  EXPECT_EQ(mesh.vertices, before);  // no vertex may leave side k-
+  mesh.vertex_sides[3] = 1 << 0 | 1 << 3;
+  EXPECT_EQ(mend_turned_cells(mesh, image, 1), 1);
   EXPECT_GT(mesh.vertices[3][2], 0);
   EXPECT_NEAR(mesh.vertices[3][2], 0, 1e-12);
   mesh.vertices[3] = before[3];

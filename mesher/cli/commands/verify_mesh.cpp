@@ -84,7 +84,7 @@ Judging judging_of(const MeshRun& run) {
   Judging judging{
       {"structure", "radius_edge", "boundary_angles", "conformity", "surface", "labels", "surface_vertices"},
       {"--delta", fmt::format("{}", run.report.delta_mm)}};
-  const bool is_delaunay = !run.report.optimization && !is_turned_for_output(run.image);
+  const bool is_delaunay = !run.report.optimization && run.report.is_delaunay_when_turned.value_or(true);
   if (is_delaunay) judging.claims.push_back("delaunay");
   if (run.report.promised_dihedral_deg) judging.claims.push_back("dihedral");  // the file has the bounds
   if (run.report.topology) judging.claims.push_back("topology");

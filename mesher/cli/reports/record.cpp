@@ -262,6 +262,12 @@ Json facets_of_sides(const MeshingReport& report) {
   return counts;
 }
 
+// Null unless a mesh with a flat box is in an oblique frame.
+Json turned_of(const MeshingReport& report) {
+  if (!report.is_delaunay_when_turned) return nullptr;
+  return {{"is_delaunay", *report.is_delaunay_when_turned}, {"mended_cells", report.cells_mended_by_turning}};
+}
+
 Json label_values(const std::vector<Label>& labels) {
   Json values = Json::array();
   for (const Label& label : labels) values.push_back(label.value);
@@ -396,6 +402,7 @@ Json record(const MeshRun& run) {
       {"labels", labels_of(run)},
       {"facet_pairs", facet_pairs_of(run)},
       {"facets_of_sides", facets_of_sides(report)},
+      {"turned", turned_of(report)},
       {"cells_per_second", run.cells_per_second()},
       {"refine_cells_per_second", run.refine_cells_per_second()},
       {"peak_rss_bytes", run.peak_rss_bytes},

@@ -52,7 +52,13 @@ std::string sides_text(const MeshingReport& report) {
   std::string text = "box        facets by side:";
   for (std::size_t side = 0; side < kNumSides; ++side)
     text += fmt::format(" {} {}", kSideNames[side], (*report.facets_of_sides)[side]);
-  return text + "\n";
+  text += "\n";
+  if (report.cells_mended_by_turning > 0)
+    text += fmt::format("           {} cells that rounding inverted in the oblique frame are mended\n",
+                        report.cells_mended_by_turning);
+  if (!report.is_delaunay_when_turned.value_or(true) && !report.optimization)
+    text += "           the file does not claim to be Delaunay: vertices on circumspheres are rounded\n";
+  return text;
 }
 
 std::string quality_text(const MeshingReport& report) {

@@ -181,6 +181,10 @@ struct MeshingReport {
   std::optional<SimulatedMachine> simulated_machine;
   /// Facets by side of the box, set if it is flat.
   std::optional<std::array<std::uint64_t, kNumSides>> facets_of_sides;
+  /// Set if the box is flat in an oblique frame: the mesh is turned for output. False if a vertex is inside
+  /// the circumsphere of a cell in the coordinates of the file, or if that could not be excluded.
+  std::optional<bool> is_delaunay_when_turned;
+  std::uint64_t cells_mended_by_turning = 0;       ///< cells that rounding had inverted
   std::optional<TopologyReport> topology;          ///< set if thin layers are kept
   std::optional<LinesReport> lines;                ///< set if lines are kept
   std::optional<PerturbationReport> perturbation;  ///< set if R7 was requested and reached

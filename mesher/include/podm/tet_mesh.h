@@ -33,6 +33,8 @@ struct TetMesh {
   /// The width, mm, by which the interfaces of the image were smoothed; 0: not smoothed.
   double smoothing_mm = 0;
   bool is_box_flat = false;  ///< facets at the border of the image lie in the planes of its box
+  /// Cells that rounding inverted when a mesh with a flat box was turned into an oblique frame.
+  std::uint64_t num_mended_by_turning = 0;
   /// Least and largest dihedral angle, degrees, that all cells keep, if bounds were requested and reached.
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
   /// If thin layers were kept, all differences of topology from the image that are left.
