@@ -135,8 +135,8 @@ inline constexpr double kMargin = 1e-9;  // relative
 inline constexpr double kSpacingFloor = 0.1;
 /// The same with a flat box.
 inline constexpr double kSpacingFloorOfBox = 0.02;
-/// With a flat box and lines the floor is at most this share of the shortest side of a voxel: lines make
-/// small cells where they end at the sides, however large s is.
+/// With a flat box the floor is also at most this share of the shortest side of a voxel: the curves at its
+/// sides and the lines that end there need small cells, however large s is.
 inline constexpr double kFloorOverVoxel = 0.1;
 
 enum class Rule { kR1, kR2, kR3, kR4, kR5, kR0 };  // positions in Counters::insertions_by_rule
@@ -155,9 +155,7 @@ struct Parameters {
   /// Insertions nearer to a vertex are refused.
   double least_spacing_mm(const LabelImage& image) const {
     if (!image.is_box_flat) return kSpacingFloor * spacing_mm;
-    const double floor_mm = kSpacingFloorOfBox * spacing_mm;
-    return lines == nullptr ? floor_mm
-                            : std::min(floor_mm, kFloorOverVoxel * std::ranges::min(image.spacing));
+    return std::min(kSpacingFloorOfBox * spacing_mm, kFloorOverVoxel * std::ranges::min(image.spacing));
   }
 };
 
