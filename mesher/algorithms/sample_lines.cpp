@@ -26,6 +26,15 @@ constexpr double kFloor = 0.25;
 // Greatest distance of an arc from its edges, over the lines' delta.
 constexpr double kMostDeviation = 0.25;
 constexpr std::size_t kLeastOfLoop = 3;  // edges
+// Samples in a flat box are moved along their arc by up to this share of the distance between them.
+constexpr double kIrregular = 0.02;
+
+// Samples of lines that are straight and parallel would lie on circles. The flat cells between them may have
+// any shape after the mesh of an oblique image is turned.
+double irregular(std::size_t arc, std::size_t sample) {
+  return kIrregular *
+         std::fabs(std::sin(13.0 * static_cast<double>(sample) + 78.2 * static_cast<double>(arc)));
+}
 
 class LineSampler : Sampler {
  public:
@@ -33,7 +42,8 @@ class LineSampler : Sampler {
       : Sampler(construction, parameters, kLines),
         rules_(construction.mesh(), construction.problem().isosurface, parameters),
         edges_(*parameters.lines),
-        lines_(edges_.lines()) {}
+        lines_(edges_.lines()),
+        is_box_flat_(construction.problem().isosurface.box().has_value()) {}
 
   void sample();
   /// Splits edges until none is left to split, or the run is over. Returns the number of splits.
@@ -63,6 +73,7 @@ class LineSampler : Sampler {
   const Rules rules_;
   LineEdges& edges_;
   const Lines& lines_;
+  const bool is_box_flat_;
   std::deque<LineEdge> listed_;
   Construction::Entries changed_;
   std::vector<CellId> ball_;  // scratch
@@ -101,12 +112,14 @@ void LineSampler::sample(std::size_t arc) {
   if (!of.is_closed() && !(has_vertex(of.first_node) && has_vertex(of.last_node))) return;
   const double length = lines_.arc(arc).length();
   const bool is_loop = of.first_node == of.last_node;
-  const auto count = std::max(static_cast<std::size_t>(std::ceil(length / edges_.delta_mm())),
+  const double most_mm = (is_box_flat_ ? 1 - kIrregular : 1) * edges_.delta_mm();
+  const auto count = std::max(static_cast<std::size_t>(std::ceil(length / most_mm)),
                               is_loop ? kLeastOfLoop : std::size_t{1});
   if (is_loop && length < static_cast<double>(count) * edges_.floor_mm()) return;
   std::vector<LineEdges::Sample> inner;
   for (std::size_t i = of.is_closed() ? 0 : 1; i < count && !is_over(); ++i) {
-    const double position = length * static_cast<double>(i) / static_cast<double>(count);
+    const double moved = static_cast<double>(i) + (is_box_flat_ ? irregular(arc, i) : 0);
+    const double position = length * moved / static_cast<double>(count);
     const LinePoint at = edges_.point_at(arc, position);
     const VertexId v = insert(at);
     if (v == kNoVertex) continue;
