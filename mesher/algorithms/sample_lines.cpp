@@ -42,8 +42,7 @@ class LineSampler : Sampler {
       : Sampler(construction, parameters, kLines),
         rules_(construction.mesh(), construction.problem().isosurface, parameters),
         edges_(*parameters.lines),
-        lines_(edges_.lines()),
-        is_box_flat_(construction.problem().isosurface.box().has_value()) {}
+        lines_(edges_.lines()) {}
 
   void sample();
   /// Splits edges until none is left to split, or the run is over. Returns the number of splits.
@@ -73,7 +72,6 @@ class LineSampler : Sampler {
   const Rules rules_;
   LineEdges& edges_;
   const Lines& lines_;
-  const bool is_box_flat_;
   std::deque<LineEdge> listed_;
   Construction::Entries changed_;
   std::vector<CellId> ball_;  // scratch
@@ -112,13 +110,13 @@ void LineSampler::sample(std::size_t arc) {
   if (!of.is_closed() && !(has_vertex(of.first_node) && has_vertex(of.last_node))) return;
   const double length = lines_.arc(arc).length();
   const bool is_loop = of.first_node == of.last_node;
-  const double most_mm = (is_box_flat_ ? 1 - kIrregular : 1) * edges_.delta_mm();
+  const double most_mm = (lines_.is_box_flat() ? 1 - kIrregular : 1) * edges_.delta_mm();
   const auto count = std::max(static_cast<std::size_t>(std::ceil(length / most_mm)),
                               is_loop ? kLeastOfLoop : std::size_t{1});
   if (is_loop && length < static_cast<double>(count) * edges_.floor_mm()) return;
   std::vector<LineEdges::Sample> inner;
   for (std::size_t i = of.is_closed() ? 0 : 1; i < count && !is_over(); ++i) {
-    const double moved = static_cast<double>(i) + (is_box_flat_ ? irregular(arc, i) : 0);
+    const double moved = static_cast<double>(i) + (lines_.is_box_flat() ? irregular(arc, i) : 0);
     const double position = length * moved / static_cast<double>(count);
     const LinePoint at = edges_.point_at(arc, position);
     const VertexId v = insert(at);

@@ -23,6 +23,7 @@ class ExactPoints {
   /// smoothed.
   ExactPoints(const LabelImage& image, std::shared_ptr<const VoxelWeights> weights);
 
+  bool is_box_flat() const { return box_.has_value(); }
   enum class On { kCurve, kNode };
   /// The point near p where labels of the sorted set tie and no other label exceeds them: all of the set if
   /// they are at most four, otherwise the greatest three; on sides of the box as many as said above. The

@@ -23,6 +23,7 @@ class Lines {
   Lines& operator=(const Lines&) = delete;
 
   const LineNetwork& network() const { return network_; }
+  bool is_box_flat() const { return exact_.is_box_flat(); }
   std::size_t num_arcs() const { return arcs_.size(); }
   const Arc& arc(std::size_t a) const { return arcs_[a]; }
   /// The arc's point at a position, in the planes of the arc's sides.

@@ -7,6 +7,12 @@
 
 namespace podm {
 
+namespace {
+
+constexpr double kIrregular = 1e-3;
+
+}  // namespace
+
 LineEdges::LineEdges(const Lines& lines, double delta_mm, double floor_mm, std::size_t vertex_capacity)
     : lines_(lines),
       delta_mm_(delta_mm),
@@ -72,7 +78,8 @@ LineEdge LineEdges::edge_after(VertexId v, std::uint32_t arc) const {
 
 // Edges at a node are cut where their length from the node is a power of two. The first edges of all arcs at
 // the node then have lengths of one power after a few splits, and none of them has an end of another in its
-// ball, whatever the angle between the arcs.
+// ball, whatever the angle between the arcs. In a flat box the lengths differ a little by arc: where arcs are
+// symmetric, ends on one circle would make flat cells (algorithms/sample_lines.cpp).
 double LineEdges::split_position(const LineEdge& edge) const {
   const Arc& arc = lines_.arc(edge.arc);
   const double length = arc.length_between(edge.from, edge.to);
@@ -80,7 +87,9 @@ double LineEdges::split_position(const LineEdge& edge) const {
              ends_at_node = records_[edge.last].arc >= kAtNode;
   if (starts_at_node == ends_at_node) return arc.middle(edge.from, edge.to);
   // the power of two in (1/3, 2/3] of the length
-  const double shell = std::exp2(std::floor(std::log2(length * 2 / 3)));
+  const double power = std::exp2(std::floor(std::log2(length * 2 / 3)));
+  const double shell =
+      lines_.is_box_flat() ? power * (1 - kIrregular * std::fabs(std::sin(78.2 * edge.arc))) : power;
   return starts_at_node ? edge.from + shell : edge.to - shell;
 }
 
