@@ -19,7 +19,8 @@ std::deque<AtomicFile> write_pvtu_piece(const MeshPiece& piece, const std::strin
 /// Removes the index of an earlier mesh, because no index may list pieces of two meshes during publication.
 /// Before that writes x.pvtu.unfinished, which lists the pieces of both. Returns the number of pieces of the
 /// earlier mesh, also of one whose run was killed before its index was written; 0 if there was none, or none
-/// that podm wrote.
+/// that podm wrote. A run that is killed before it published a piece counts as well: files that have the
+/// names of its pieces go with them.
 int withdraw_pvtu_index(const std::string& path, int num_pieces);
 
 /// Writes the index of the cells and that of the facets. All pieces must have been published. Then removes

@@ -19,6 +19,18 @@ constexpr std::size_t kCellsAtATime = 1 << 11;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Axes of images that count as orthogonal may be off by less than this (working_frame.cpp).
 constexpr double kShear = 4e-12;
+
+// Returns the largest relative change of a length by turning. The caller of the library may give spacings
+// that differ a little from those of the affine (algorithms/check_options.h).
+double largest_stretch(const LabelImage& image) {
+  double stretch = kShear;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Affine& a = image.voxel_to_ras;
+    const double norm = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    stretch = std::max(stretch, kShear + std::fabs(norm / image.spacing[axis] - 1));
+  }
+  return stretch;
+}
 constexpr double kMostOfRadius = 1e-3;  // of tau in squared radii
 
 // A sphere in the working frame, which passes through `vertex`.
@@ -44,6 +56,7 @@ class TurnedStore {
   TurnedStore(const Mesh& mesh, const LabelImage& image, int threads)
       : mesh_(mesh),
         image_(image),
+        stretch_(largest_stretch(image)),
         threads_(num_threads(threads)),
         is_mirrored_(determinant(image.voxel_to_ras) < 0),
         is_used_(mesh.vertex_bound(), 0) {}
@@ -88,7 +101,7 @@ class TurnedStore {
   // Raises tau to that of an output cell. Returns false if the cell is too flat.
   bool raise(std::atomic<double>& tau_mm2, CellId c) const {
     const Sphere sphere(mesh_, c);
-    const double e_mm = 8 * kEpsilon * largest_mm_ + kShear * sphere.radius_mm;
+    const double e_mm = 8 * kEpsilon * largest_mm_ + stretch_ * sphere.radius_mm;
     const double own_mm2 = 100 * e_mm * sphere.radius_over_det() + sphere.error_mm2();
     if (!(own_mm2 < kMostOfRadius * sphere.radius_mm * sphere.radius_mm)) return false;
     double known_mm2 = tau_mm2;
@@ -145,6 +158,7 @@ class TurnedStore {
 
   const Mesh& mesh_;
   const LabelImage& image_;
+  const double stretch_;
   std::size_t threads_;
   bool is_mirrored_;
   std::vector<char> is_used_;  // by vertex: by a cell of the output
