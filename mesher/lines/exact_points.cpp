@@ -76,9 +76,10 @@ std::optional<Point> ExactPoints::in_block(const Voxel& block, const Point& u,
   return found ? std::optional(center(block) + *found) : std::nullopt;
 }
 
-std::optional<SurfacePoint> ExactPoints::near(const SurfacePoint& p, const std::vector<LabelIndex>& labels,
-                                              On on) const {
-  const Counts counts = counts_of(p.sides, on);
+std::optional<SurfacePoint> ExactPoints::near(const Point& q, SideMask sides,
+                                              const std::vector<LabelIndex>& labels, On on) const {
+  const Counts counts = counts_of(sides, on);
+  const SurfacePoint p = on_sides(q, sides);
   const Point u = map(from_mm_, p);
   const Vector beyond{kBeyond, kBeyond, kBeyond};
   const Voxel low = block_at(u - beyond), high = block_at(u + beyond);

@@ -26,10 +26,11 @@ class ExactPoints {
   bool is_box_flat() const { return box_.has_value(); }
   enum class On { kCurve, kNode };
   /// The point near p where labels of the sorted set tie and no other label exceeds them: all of the set if
-  /// they are at most four, otherwise the greatest three; on sides of the box as many as said above. The
-  /// point is on the sides that p is on. Points are in mm. None if no such point is found within a quarter of
-  /// a voxel.
-  std::optional<SurfacePoint> near(const SurfacePoint& p, const std::vector<LabelIndex>& labels, On on) const;
+  /// they are at most four, otherwise the greatest three; as many as said above on `sides`, those of the
+  /// curve or node. The point is on on_sides(p, sides). Points are in mm. None if no such point is found
+  /// within a quarter of a voxel.
+  std::optional<SurfacePoint> near(const Point& p, SideMask sides, const std::vector<LabelIndex>& labels,
+                                   On on) const;
   /// The point p in the planes of these sides, and in those that it nearly lies in.
   SurfacePoint on_sides(const Point& p, SideMask sides) const {
     if (!box_) return {p, sides};

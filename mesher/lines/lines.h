@@ -35,10 +35,12 @@ class Lines {
   }
   /// The line's point near the arc's at a position, on the same sides. None if it is not found.
   std::optional<SurfacePoint> exact_point(std::size_t arc, double position) const {
-    return exact_.near(point(arc, position), network_.arcs[arc].labels, ExactPoints::On::kCurve);
+    return exact_.near(arcs_[arc].point_at(position), network_.arcs[arc].sides, network_.arcs[arc].labels,
+                       ExactPoints::On::kCurve);
   }
   std::optional<SurfacePoint> exact_node(std::size_t node) const {
-    return exact_.near(this->node(node), network_.nodes[node].labels, ExactPoints::On::kNode);
+    return exact_.near(network_.nodes[node].point, network_.nodes[node].sides, network_.nodes[node].labels,
+                       ExactPoints::On::kNode);
   }
 
  private:

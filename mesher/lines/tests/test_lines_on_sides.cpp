@@ -105,6 +105,31 @@ TEST(LinesOnSides, ExactNodesAreInAllTheirPlanesAndBetweenTheLabels) {
   EXPECT_GT(num_on[2], 5);
 }
 
+// Where an arc from inside ends at a side, all its labels tie, although its last points are in the plane.
+TEST(LinesOnSides, ExactPointsOfInnerArcsAreBetweenAllLabelsUpToThePlane) {
+  constexpr double kFromEnd = 0.004;  // voxels
+  const LabelImage image = flat_polycrystal(5);
+  const Lines lines(part_of(traced(image), is_line), image, nullptr);
+  const LabelFunction label(image, nullptr, true);
+  int num_found = 0;
+  for (std::size_t a = 0; a < lines.num_arcs(); ++a) {
+    const LineArc& arc = lines.network().arcs[a];
+    if (arc.sides != 0 || arc.labels.size() != 3 || arc.is_closed()) continue;
+    for (const auto& [node, at] :
+         {std::pair(arc.first_node, kFromEnd), std::pair(arc.last_node, lines.arc(a).length() - kFromEnd)}) {
+      const SideMask sides = lines.network().nodes[static_cast<std::size_t>(node)].sides;
+      if (std::popcount(sides) != 1) continue;
+      const std::optional<SurfacePoint> p = lines.exact_point(a, at);
+      ASSERT_TRUE(p);
+      ++num_found;
+      EXPECT_EQ(p->sides, sides);
+      const std::set<LabelIndex> seen = label.labels_around(*p, 1e-6);
+      EXPECT_TRUE(std::includes(seen.begin(), seen.end(), arc.labels.begin(), arc.labels.end()));
+    }
+  }
+  EXPECT_GT(num_found, 10);
+}
+
 // One label in background has no line, and what tracing cannot decide about its curves is not reported.
 TEST(LinesOnSides, CurvesOfTwoLabelsAreNoLines) {
   Random random(4);
