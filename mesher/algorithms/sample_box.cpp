@@ -24,14 +24,11 @@ class BoxSampler : Sampler {
         parameters_(parameters) {}
 
   void sample(const LineNetwork& curves) {
-    for (const LineNode& node : curves.nodes)
-      if (ends_object(node.labels)) insert(node.point, node.sides);
-    for (const LineArc& arc : curves.arcs)
-      if (ends_object(arc.labels)) sample(arc);
+    for (const LineNode& node : curves.nodes) insert(node.point, node.sides);
+    for (const LineArc& arc : curves.arcs) sample(arc);
   }
 
  private:
-  static bool ends_object(const std::vector<LabelIndex>& labels) { return labels.front() == kBackground; }
   double delta_at(const Point& p) const {
     return parameters_.deltas != nullptr ? parameters_.deltas->at(p) : parameters_.delta_mm;
   }

@@ -153,7 +153,7 @@ class Oracle {
   SurfacePoint moved_onto_edge(const SurfacePoint& z, double reach_mm) const;
   /// The same, or else a point of the curve in which an interface with background meets the side.
   SurfacePoint settled_on_edge(const SurfacePoint& z, double reach_mm) const;
-  /// The point of an edge of the box, or of a curve in which an interface with background meets a side, near
+  /// The point of an edge of the box, or of a curve in which an interface meets a side, near
   /// p. `sides` are those of the edge or curve. None if there is no such point within half a voxel.
   std::optional<SurfacePoint> on_curve_of_box(const Point& p, SideMask sides) const;
   /// True if both labels are around a point on sides of the box, in the planes of these sides.

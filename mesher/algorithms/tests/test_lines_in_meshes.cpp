@@ -103,7 +103,7 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
         .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(8, 165)) : std::nullopt,
         .lines = &lines_,
         .lines_delta_mm = 1.25 * kLineDelta,
-        .box_curves = scene_.is_box_flat ? &network_ : nullptr};
+        .box_curves = scene_.is_box_flat ? &box_curves_ : nullptr};
     const Team team{.executor = method.executor,
                     .coordination = {.num_workers = method.num_workers},
                     .num_nodes = method.num_nodes,
@@ -137,6 +137,7 @@ class MeshWithLines : public testing::TestWithParam<std::tuple<LineScene, LineMe
                                      {.has_lines = true, .is_box_flat = scene_.is_box_flat, .threads = 1});
   Lines lines_{part_of(network_, [](const LineArc& arc) { return arc.labels.size() >= kLabelsOfLine; }),
                image_, weights_};
+  LineNetwork box_curves_ = part_of(network_, [](const LineArc& arc) { return arc.sides != 0; });
   OperationLogWriter log_;
   Refinement refinement_;
 };
