@@ -32,7 +32,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       rules_(mesh, isosurface, parameters, reads_),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       poor_(mesh.cell_capacity()),
-      min_distance_(parameters.least_spacing_mm(isosurface.image())),
+      min_distance_(parameters.least_spacing_mm()),
       self_(self),
       order_(order) {
   if (parameters.lines != nullptr) lines_.emplace(mesh, rules_, operation_, *parameters.lines);
@@ -295,11 +295,27 @@ Outcome Worker<Locks>::give_up() {
 template <class Locks>
 Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule, SideMask sides) {
   make_room_in_log();
-  if (operation_.commit_insertion(p, kind, min_distance_, sides) != StepResult::kDone) return give_up();
+  if (operation_.commit_insertion(p, kind, min_distance_, sides) != StepResult::kDone &&
+      !commit_in_box(p, kind, sides))
+    return give_up();
   operation_.counters().removals += operation_.removed().size();
   ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
   record_commit(p, kind, sides);
   return Outcome::kCommitted;
+}
+
+// Commits an insertion that was refused, if the floor of a flat box allows it: splits of lines need a side.
+template <class Locks>
+bool Worker<Locks>::commit_in_box(const Point& p, VertexKind kind, SideMask sides) {
+  if (!isosurface_.box()) return false;
+  bool is_near = false, is_refused = false;
+  operation_.for_each_region_vertex([&](VertexId v, CellId) {
+    if (operation_.removes(v) || squared_distance(mesh_.point(v), p) >= min_distance_ * min_distance_) return;
+    is_near = true;
+    is_refused = is_refused || (kind == VertexKind::kLine && (sides | mesh_.vertex(v).sides) == 0);
+  });
+  const double floor_mm = parameters_.least_spacing_in_box_mm(isosurface_.image());
+  return is_near && !is_refused && operation_.commit_insertion(p, kind, floor_mm, sides) == StepResult::kDone;
 }
 
 template <class Locks>

@@ -53,18 +53,19 @@
 // box to one outside. R1 to R6 never move a vertex, and R7 keeps its sides.
 //   Spacing. R3's ball is empty, and its radius is at least the facet's circumradius. If all three vertices
 //   are samples, that is m / sqrt(3) or more, so each such insertion may leave 0.17 m. kSpacingFloorOfBox
-//   ends a chain of them. The other rules keep what they keep in terms of m, whatever m is.
-//   Edges of the box, and the curves in which interfaces with background meet its sides, are sampled before
-//   R1 (algorithms/sample_box.h), at least 0.7 delta apart, so that m begins at 0.7 s. R3's point moves to
-//   one of them that is within 0.7 of the ball's radius, and then keeps 0.3 of it. A point that stayed beside
-//   an edge would call for the next one, nearer to it. As soon as all facets at the sides lie in their
-//   planes, the edges of the box where the object touches them are edges of the mesh, and its corners
-//   vertices: the boundary is closed, and facets in different planes can only meet there. The planes are
-//   reached, up to the floor. Let a be a vertex off the side and z the point at which its facet leaves. If a
-//   is on another side, the edge between the two is nearer to z than a is. If it is on an interface, it is
-//   0.45 voxels or more from the plane (BoxPlanes::snapped), or as far as R3 may move its point: half of the
-//   radius of an empty ball. Planes are tried one by one, the nearest first. Within half a voxel of the plane
-//   the interface stands at right angles to it. Facets that the floor leaves off their side are counted
+//   ends a chain of them. It counts inside, too: the other rules keep what they keep in terms of m, whatever
+//   m is, and cells beside small ones at sides need it. Edges of the box, and the curves in which
+//   interfaces meet its sides, are sampled before R1 (algorithms/sample_box.h), at least 0.7 delta apart, so
+//   that m begins at 0.7 s. R3's point moves to an edge, or to a curve with background beyond it, that is
+//   within 0.7 of the ball's radius, and then keeps 0.3 of it. A point that stayed beside an edge would call
+//   for the next one, nearer to it. As soon as all facets at the sides lie in their planes, the edges of the
+//   box where the object touches them are edges of the mesh, and its corners vertices: the boundary is
+//   closed, and facets in different planes can only meet there. The planes are reached, up to the floor. Let
+//   a be a vertex off the side and z the point at which its facet leaves. If a is on another side, the edge
+//   between the two is nearer to z than a is. If it is on an interface, it is 0.45 voxels or more from the
+//   plane (BoxPlanes::snapped), or farther than R3 may move its point: half of the radius of an empty ball,
+//   in all. Planes are tried one by one, the nearest first. Within half a voxel of the plane the interface
+//   stands at right angles to it. Facets that the floor leaves off their side are counted
 //   (Guarantees::off_sides).
 // R4 makes sizes of cells grow away from places of small delta. How fast they grow is not proved, but
 // measured.
@@ -133,9 +134,9 @@ inline constexpr double kMargin = 1e-9;  // relative
 /// Only an oracle that errs about the nearest point can bring them much closer. An insertion nearer to a
 /// vertex than this share of s is refused, so that refinement terminates for every image.
 inline constexpr double kSpacingFloor = 0.1;
-/// The same with a flat box.
+/// The same with a flat box, except for vertices of lines that are inside.
 inline constexpr double kSpacingFloorOfBox = 0.02;
-/// With a flat box the floor is also at most this share of the shortest side of a voxel: the curves at its
+/// With a flat box the floor is also at most this share of the shortest side of a voxel: the curves at the
 /// sides and the lines that end there need small cells, however large s is.
 inline constexpr double kFloorOverVoxel = 0.1;
 
@@ -153,8 +154,9 @@ struct Parameters {
   std::shared_ptr<const DeltaField> deltas = nullptr;  // null: delta is the same everywhere
   LineEdges* lines = nullptr;                          // null: no lines are kept
   /// Insertions nearer to a vertex are refused.
-  double least_spacing_mm(const LabelImage& image) const {
-    if (!image.is_box_flat) return kSpacingFloor * spacing_mm;
+  double least_spacing_mm() const { return kSpacingFloor * spacing_mm; }
+  /// The same with a flat box. For vertices of lines it counts only if one of the two points is on a side.
+  double least_spacing_in_box_mm(const LabelImage& image) const {
     return std::min(kSpacingFloorOfBox * spacing_mm, kFloorOverVoxel * std::ranges::min(image.spacing));
   }
 };

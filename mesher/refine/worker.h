@@ -125,6 +125,7 @@ class Worker {
   double squared_reach_of_r6_near_lines(const Point& z) const;
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule, SideMask sides = 0);
+  [[gnu::noinline]] bool commit_in_box(const Point& p, VertexKind kind, SideMask sides);
   Outcome give_up();
   void make_room_in_log();
   void record_commit(const Point& p, VertexKind kind, SideMask sides);
