@@ -200,11 +200,10 @@ std::optional<SurfaceCenter> LineKeeper<Locks>::sample_of_missing(const LineEdge
     for (const auto& [from, to] : {std::pair(around_edge_[i], next), std::pair(next, around_edge_[i])}) {
       const auto crossing = rules_.first_crossing(mesh_.cell(from).center, mesh_.cell(to).center);
       if (!crossing || !is_missing(crossing->beyond)) continue;
-      for (const SurfacePoint& z :
-           {rules_.near_sides(crossing->point, distance(crossing->point, end)), crossing->point}) {
-        if (squared_distance(z, end) < edges_.floor_mm() * edges_.floor_mm()) continue;
-        if (const auto sample = rules_.in_conflict(z, from, to)) return sample;
-      }
+      const double radius_mm = distance(crossing->point, end);  // of an empty ball
+      const SurfacePoint z = rules_.near_sides(crossing->point, radius_mm);
+      if (radius_mm - distance(z, crossing->point) < edges_.floor_mm()) continue;
+      if (const auto sample = rules_.in_conflict(z, from, to)) return sample;
     }
   }
   return std::nullopt;

@@ -351,13 +351,14 @@ std::optional<SurfaceCenter> RulesOn<Cells>::center_on_side(const Examination& t
   return in_conflict(*z, t.cell, neighbor);
 }
 
-// Moves a point of the isosurface onto sides that are very near, and from a side onto an edge of the box
-// within `reach`.
+// Moves a point of the isosurface onto sides that are very near, and from a side onto an edge of the box, by
+// at most `reach` in all. Both moves are along axes.
 template <class Cells>
 SurfacePoint RulesOn<Cells>::moved_to_sides(const SurfacePoint& z, double reach) const {
   const SurfacePoint snapped = isosurface_.box()->snapped(z, reach);
   if (snapped.sides == 0) return z;
-  return ask_either([&](const auto& oracle) { return oracle.moved_onto_edge(snapped, reach); });
+  const double left = std::sqrt(std::max(square(reach) - squared_distance(z, snapped), 0.0));
+  return ask_either([&](const auto& oracle) { return oracle.moved_onto_edge(snapped, left); });
 }
 
 // The ball around z, on the dual edge of the facet, through the facet's vertices is empty. A point may move

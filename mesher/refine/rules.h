@@ -98,20 +98,24 @@
 //   sides. Not proved is that lines are kept. Where two are nearer to each other than about f, edges are
 //   lost.
 //
-// Lines in a flat box. Where an interface meets a side, three labels meet along a line in the side: those of
-// the interface, and the background outside. Vertices on it are on that side. Edges of the box, and the
-// curves where an interface with background meets a side, have two labels. They are no lines: the bound of 30
-// degrees holds beside them. Their samples come after those of lines, and leave out the balls of their edges.
+// Lines in a flat box. Where an interface of two labels meets a side, they meet the background outside along
+// a line in the side. Vertices on it are on that side. If one of the labels is background, or on an edge of
+// the box, two labels are left. These curves are no lines: the bound of 30 degrees holds beside them. Samples
+// of edges and curves come after those of lines, and leave out the balls of their edges.
+//   R0 keeps kSpacingFloor between points that are on no side. Where lines run side by side, splits that go
+//   further lose both.
 //   R3 also applies to a facet between two labels that has a sample of a side where they do not meet, if R3's
 //   ball has a radius of f or more: three labels would meet along an edge of the facet, away from lines.
-//   Termination. R0's points between labels move to sides as R3's points do, and still keep f. R3's points
-//   for samples of other labels keep f / 2 from all vertices. So there are finitely many of both. From the
-//   last one on, the spacing is that of a flat box, where m is what they have left. The planes are reached. A
-//   vertex a of a line may be as near to a side as R0 splits. Within half a voxel of the side labels do not
+//   It does not look at vertices of lines.
+//   Termination. R0's points between labels move to sides as R3's points do, by at most half of the radius of
+//   an empty ball. If a point would not keep f then, R0 splits the edge instead. R3's points for samples of
+//   other labels keep f / 2 from all vertices. So there are finitely many of both. From the last one on, the
+//   spacing is that of a flat box, where m is what they have left. The planes are reached. A vertex a of a
+//   line may be as near to a side as R0 splits. Let a be exact. Within half a voxel of the side labels do not
 //   change along the axis: the line stands at right angles to the plane, and a lies above its end n. A point
 //   z of the plane is then nearer to n than to a. So a is no vertex of a facet that leaves at z: the ball of
 //   R3 around z through a would not be empty. This needs n to be a vertex, and the exact end of its line.
-//   Where n stands for several nodes, the floor of the spacing counts.
+//   Where n stands for several nodes, or a is not exact, the floor of the spacing counts.
 #pragma once
 
 #include <algorithm>
