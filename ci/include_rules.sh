@@ -22,6 +22,7 @@ may_include() {
     mesher/refine) echo mesher/delaunay mesher/sizing mesher/lines mesher/isosurface mesher/image "$ground" ;;
     mesher/topology) echo mesher/delaunay mesher/image "$ground" ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
+    mesher/values) echo mesher/image "$ground" ;;
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo "$store" ;;
     mesher/run) echo mesher/prediction mesher/replay mesher/optimize mesher/algorithms mesher/io mesher/files \

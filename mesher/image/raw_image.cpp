@@ -101,6 +101,13 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
   return voxels;
 }
 
+void refuse_voxel(const RawImage& raw, std::size_t voxel, const std::string& fault,
+                  const std::string& what_it_is_not) {
+  const auto nx = static_cast<std::size_t>(raw.size[0]), ny = static_cast<std::size_t>(raw.size[1]);
+  refuse(raw.path, fault + ": voxel (" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) +
+                       ", " + std::to_string(voxel / nx / ny) + ") is not " + what_it_is_not);
+}
+
 void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most_bytes) {
   if (bytes <= most_bytes) return;
   const auto gib = [](std::uint64_t number) {

@@ -45,6 +45,9 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 
 /// Throws InputError "path: fault".
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);
+/// Throws InputError "path: fault: voxel (i, j, k) is not ..."; `voxel` counts voxels, x fastest.
+[[noreturn]] void refuse_voxel(const RawImage& raw, std::size_t voxel, const std::string& fault,
+                               const std::string& what_it_is_not);
 
 /// The number of voxels. Throws InputError unless the image has three axes (further axes must have length 1),
 /// no axis is empty, and there are at most kMaxVoxels voxels.

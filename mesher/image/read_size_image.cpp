@@ -9,13 +9,6 @@ namespace podm {
 
 namespace {
 
-[[noreturn]] void refuse_voxel(const RawImage& raw, std::size_t voxel) {
-  const auto nx = static_cast<std::size_t>(raw.size[0]), ny = static_cast<std::size_t>(raw.size[1]);
-  refuse(raw.path, "a size in mm is needed at every voxel, 0 for none: voxel (" + std::to_string(voxel % nx) +
-                       ", " + std::to_string(voxel / nx % ny) + ", " + std::to_string(voxel / nx / ny) +
-                       ") is not a number");
-}
-
 template <class Voxel>
 std::vector<float> radii_from(const RawImage& raw) {
   std::vector<float> radii(raw.bytes.size() / sizeof(Voxel));
@@ -23,7 +16,8 @@ std::vector<float> radii_from(const RawImage& raw) {
     Voxel voxel;
     std::memcpy(&voxel, raw.bytes.data() + i * sizeof voxel, sizeof voxel);
     const double value = raw.slope * static_cast<double>(voxel) + raw.intercept;
-    if (std::isnan(value)) refuse_voxel(raw, i);
+    if (std::isnan(value))
+      refuse_voxel(raw, i, "a size in mm is needed at every voxel, 0 for none", "a number");
     const auto radius = static_cast<float>(value);
     radii[i] = radius > 0 && std::isfinite(radius) ? radius : 0;
   }

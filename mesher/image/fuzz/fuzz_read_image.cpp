@@ -50,5 +50,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string path = folders[format].write(kNames[format], fuzz::text_of(data + 1, size - 1));
   expect_image_or_refusal(path, [&] { return read_image(path, {}, 1); });
   expect_image_or_refusal(path, [&] { return read_size_image(path); });
+  expect_image_or_refusal(path, [&] { return read_value_image(path); });
   return 0;
 }

@@ -11,6 +11,7 @@
 #include "podm/label_image.h"
 #include "podm/option.h"
 #include "podm/size_image.h"
+#include "podm/value_image.h"
 
 namespace podm {
 
@@ -87,6 +88,11 @@ LabelImage read_image(const std::string& path, const LabelSelection& selection =
 /// number, or no voxel has a bound.
 SizeImage read_size_image(const std::string& path,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+
+/// Reads an image of values, of the same formats and any voxel type. Throws InputError that names the file and
+/// the fault: it is not 3-D, or a voxel is not a finite number.
+ValueImage read_value_image(const std::string& path,
+                            std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
 
