@@ -16,7 +16,7 @@ install(DIRECTORY ${PODM_SCRIPTS}/views ${PODM_SCRIPTS}/report_page ${PODM_SCRIP
         DESTINATION ${CMAKE_INSTALL_DATADIR}/podm COMPONENT programs PATTERN __pycache__ EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(TARGETS podm_library podm_mesher podm_refine podm_workers podm_optimize podm_octree podm_delaunay podm_lines podm_sizing podm_topology podm_smoothing podm_isosurface podm_label_image podm_phantoms
+install(TARGETS podm_library podm_mesher podm_refine podm_workers podm_optimize podm_octree podm_delaunay podm_lines podm_sizing podm_topology podm_values podm_smoothing podm_isosurface podm_label_image podm_phantoms
                 podm_image_io podm_io
                 podm_files podm_geometry podm_runtime podm_toml podm_flags
         EXPORT podmTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

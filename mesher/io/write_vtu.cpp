@@ -157,6 +157,8 @@ VtuGrid cell_grid(const TetMesh& mesh) {
   grid.cell_data.push_back(
       make_array<std::uint32_t>("UInt32", "label", mesh.cells.size(),
                                 [&mesh](std::size_t i) { return mesh.labels[mesh.cell_labels[i]].value; }));
+  for (const CellArray& array : mesh.cell_arrays)
+    grid.cell_data.push_back(make_array_of("Float64", xml_escaped(array.name), array.values));
   return grid;
 }
 

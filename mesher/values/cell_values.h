@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "podm/choices.h"
 #include "podm/tet_mesh.h"
 #include "podm/value_image.h"
 #include "values/grid_frame.h"

@@ -19,7 +19,15 @@ Rational determinant_of(const ExactAffine& a) {
   return a[0] * cofactor_of(a, 0, 0) + a[1] * cofactor_of(a, 0, 1) + a[2] * cofactor_of(a, 0, 2);
 }
 
-ExactAffine inverse_of(const ExactAffine& a) {
+}  // namespace
+
+ExactAffine exact_affine(const Affine& affine) {
+  ExactAffine exact;
+  std::copy(affine.begin(), affine.end(), exact.begin());
+  return exact;
+}
+
+ExactAffine exact_inverse(const ExactAffine& a) {
   const Rational det = determinant_of(a);
   ExactAffine b;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -27,14 +35,6 @@ ExactAffine inverse_of(const ExactAffine& a) {
     for (std::size_t c = 0; c < 3; ++c) b[4 * r + 3] -= b[4 * r + c] * a[4 * c + 3];
   }
   return b;
-}
-
-}  // namespace
-
-ExactAffine exact_affine(const Affine& affine) {
-  ExactAffine exact;
-  std::copy(affine.begin(), affine.end(), exact.begin());
-  return exact;
 }
 
 ExactAffine product(const ExactAffine& a, const ExactAffine& b) {
@@ -48,7 +48,7 @@ ExactAffine product(const ExactAffine& a, const ExactAffine& b) {
 }
 
 GridFrame::GridFrame(const ExactAffine& grid_to_mesh, int parts)
-    : mesh_to_grid_(inverse_of(grid_to_mesh)), keeps_orientation_(determinant_of(grid_to_mesh) > 0) {
+    : mesh_to_grid_(exact_inverse(grid_to_mesh)), keeps_orientation_(determinant_of(grid_to_mesh) > 0) {
   for (const std::size_t translation : {3u, 7u, 11u}) mesh_to_grid_[translation] += Rational(1, 2);
   for (std::size_t i = 0; i < 12; ++i) {
     mesh_to_grid_[i] *= parts;

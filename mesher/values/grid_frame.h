@@ -43,6 +43,8 @@ class GridFrame {
 
 /// Returns the affine as exact numbers.
 std::array<Rational, 12> exact_affine(const Affine& affine);
+/// Returns the inverse map. The determinant of the linear part must not be 0.
+std::array<Rational, 12> exact_inverse(const std::array<Rational, 12>& affine);
 /// Returns the map that applies `b` first.
 std::array<Rational, 12> product(const std::array<Rational, 12>& a, const std::array<Rational, 12>& b);
 

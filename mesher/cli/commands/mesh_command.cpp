@@ -102,22 +102,25 @@ int run(const MeshCommand& command) {
               .mesh_sha256 = {},
               .read_s = read_s,
               .verification = nullptr};
+  const ImagesOfValues images_of_values(command, image, bytes_for_image(limit_bytes));
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.leaves.with_schedule = !command.schedule_path.empty();
   MeshingResult result = mesh_with_display(image, run.options, command, signals);
   run.take(std::move(result.report), result.mesh);
-  run.write_s = timed([&] {
-    const int threads = loop_threads(command.meshing.team);
-    canonicalize(result.mesh, threads);
-    // Computes the hash during writing if there are threads for both.
-    std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
-                                               [&] { return mesh_sha256(result.mesh); });
-    write_outputs(command, result.mesh, run.report.warnings);
-    run.mesh_sha256 = hash.get();
-    if (log) finish_log(*log, run);
-    if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
-  });
+  const int threads = loop_threads(command.meshing.team);
+  const double canonicalize_s = timed([&] { canonicalize(result.mesh, threads); });
+  run.values_s = timed([&] { run.values = images_of_values.add_to(result.mesh); });
+  run.write_s = canonicalize_s + timed([&] {
+                  // Computes the hash during writing if there are threads for both.
+                  std::future<std::string> hash =
+                      std::async(threads == 1 ? std::launch::deferred : std::launch::async,
+                                 [&] { return mesh_sha256(result.mesh); });
+                  write_outputs(command, result.mesh, run.report.warnings);
+                  run.mesh_sha256 = hash.get();
+                  if (log) finish_log(*log, run);
+                  if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
+                });
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals);
   const int exit_code = report(run, records);

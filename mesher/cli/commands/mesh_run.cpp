@@ -16,13 +16,14 @@ namespace podm::cli {
 std::map<std::string, double> MeshRun::phases_s() const {
   std::map<std::string, double> phases = report.phases_s;
   phases[command.image.is_phantom() ? "draw" : "read"] = read_s;
+  if (!values.empty()) phases["values"] = values_s;
   if (!command.mesh_path.empty()) phases["write"] = write_s;
   return phases;
 }
 
 double MeshRun::cells_per_second() const {
-  static const std::set<std::string> kNotCounted{"calibrate", "draw",    "perturb",
-                                                 "optimize",  "measure", "write"};
+  static const std::set<std::string> kNotCounted{"calibrate", "draw",   "perturb", "optimize",
+                                                 "measure",   "values", "write"};
   double seconds = 0;
   for (const auto& [phase, phase_s] : phases_s())
     if (!kNotCounted.contains(phase)) seconds += phase_s;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/commands/values_on_cells.h"
 #include "cli/options/options.h"
 #include "cli/reports/appended_file.h"
 #include "podm/label_image.h"
@@ -41,7 +42,8 @@ struct MeshRun {
   MeshingReport report;
   MeshNumbers mesh;
   std::string mesh_sha256;  ///< empty: no process holds the whole mesh
-  double read_s = 0, write_s = 0;
+  double read_s = 0, values_s = 0, write_s = 0;
+  std::vector<ValuesOnCells> values = {};
   std::uint64_t peak_rss_bytes = 0;
   JsonPointer verification = nullptr;  ///< report of podm-verify; null: none
   std::string program = "podm";
@@ -50,7 +52,8 @@ struct MeshRun {
 
   /// Takes over what mesh_image() returned of this run, and adds the warnings of the image.
   void take(MeshingReport&& finished, const TetMesh& made);
-  /// Returns the seconds by phase: those of the library, "read" (or "draw" for a phantom) and "write".
+  /// Returns the seconds by phase: those of the library, "read" (or "draw" for a phantom), "values" and
+  /// "write".
   std::map<std::string, double> phases_s() const;
   /// Returns the elements per second of the paper's eq. (1): cells over the seconds of all phases except
   /// measuring, writing, drawing a phantom, calibration, R7 and optimisation. R7 and optimisation are not in

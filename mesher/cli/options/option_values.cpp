@@ -92,6 +92,14 @@ NearLabels near_labels(const std::string& text, const std::string& option) {
   return near;
 }
 
+// "HU=ct.nii.gz".
+std::pair<std::string, std::string> named_file(const std::string& text, const std::string& option) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InputError(fmt::format("{}: '{}' is not NAME=FILE, as in HU=ct.nii.gz", option, text));
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 }  // namespace
 
 std::uint64_t bytes_of_gib(double gib) {
@@ -121,6 +129,10 @@ void parse_into(std::array<double, 2>& value, const std::string& text, const Dec
 
 void parse_into(LabelLengths& value, const std::string& text, const Declaration& of) {
   value.push_back(label_length(text, spelled(of)));
+}
+
+void parse_into(NamedFiles& value, const std::string& text, const Declaration& of) {
+  value.push_back(named_file(text, spelled(of)));
 }
 
 void parse_into(std::vector<NearLabels>& value, const std::string& text, const Declaration& of) {

@@ -61,6 +61,8 @@ struct NearLabels {
 };
 /// Lengths by label name or value.
 using LabelLengths = std::vector<std::pair<std::string, double>>;
+/// Names and paths of files.
+using NamedFiles = std::vector<std::pair<std::string, std::string>>;
 using LabelRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 using Merges = std::vector<LabelSelection::Merge>;
 
@@ -96,6 +98,7 @@ void parse_into(std::string& value, const std::string& text, const Declaration& 
 void parse_into(std::array<double, 2>& value, const std::string& text, const Declaration& of);
 void parse_into(LabelLengths& value, const std::string& text, const Declaration& of);
 void parse_into(std::vector<NearLabels>& value, const std::string& text, const Declaration& of);
+void parse_into(NamedFiles& value, const std::string& text, const Declaration& of);
 void parse_into(LabelRanges& value, const std::string& text, const Declaration& of);
 void parse_into(LayerOrder& value, const std::string& text, const Declaration& of);
 void parse_into(Merges& value, const std::string& text, const Declaration& of);
@@ -119,7 +122,7 @@ void parse_into(std::optional<Choice>& value, const std::string& text, const Dec
 template <class Value>
 inline constexpr bool kIsRepeatable =
     std::same_as<Value, LabelLengths> || std::same_as<Value, std::vector<NearLabels>> ||
-    std::same_as<Value, Merges>;
+    std::same_as<Value, NamedFiles> || std::same_as<Value, Merges>;
 
 // The default as help shows it; empty where Declaration::unset says it.
 std::string shown(double value);

@@ -64,6 +64,8 @@ struct MeshCommand {
   ImageArguments image;
   std::string mesh_path;  ///< empty: the mesh stays in memory
   MeshFileOptions mesh_file;
+  NamedFiles values;  ///< images of values by the name of their arrays
+  ValuesOf values_of = ValuesOf::kConstant;
   std::string surface_path;   ///< empty: no surfaces
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
@@ -118,6 +120,13 @@ struct MeshCommand {
                 .short_name = "-o",
                 .is_required = true}),
         nested(&M::mesh_file),
+        option(&M::values, "values", "NAME=FILE", kOutput,
+               "write the mean of another image over each cell as NAME, with NAME_least,\n"
+               "NAME_largest and NAME_covered (.vtu alone); repeatable",
+               {.unset = "none", .uses = kOfFiles, .not_on_ranks = "only .vtu holds values"}),
+        option(&M::values_of, "values-of", "", kOutput,
+               "the field of these images: one value per voxel, or trilinear between centers",
+               {.uses = kOfFiles, .not_on_ranks = "only .vtu holds values", .needs = "values"}),
         option(&M::surface_path, "surface", "FILE", kOutput,
                "also write the closed surface of each label: .stl or .ply",
                {.unset = "none", .uses = kOfFiles}),

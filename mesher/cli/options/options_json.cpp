@@ -61,6 +61,8 @@ const char* kind_of(const Declaration& of) {
     return "lengths of labels";
   } else if constexpr (std::same_as<Value, std::vector<NearLabels>>) {
     return "lengths of pairs of labels";
+  } else if constexpr (std::same_as<Value, NamedFiles>) {
+    return "named files";
   } else if constexpr (std::same_as<Value, LabelRanges>) {
     return "label values";
   } else if constexpr (std::same_as<Value, LayerOrder>) {

@@ -63,6 +63,18 @@ Json size_image_of(const MeshRun& run) {
   return {{"path", path}, {"sha256", file_sha256(path)}};
 }
 
+Json values_of(const MeshRun& run) {
+  Json all = Json::array();
+  for (const ValuesOnCells& values : run.values)
+    all.push_back({{"name", values.name},
+                   {"path", values.path},
+                   {"sha256", file_sha256(values.path)},
+                   {"least_mean", values.report.least_mean},
+                   {"largest_mean", values.report.largest_mean},
+                   {"partly_covered", values.report.partly_covered}});
+  return all;
+}
+
 // The options as given; 0 means what it means in MeshingOptions. Labels are those of the image.
 Json options_of(const MeshRun& run) {
   Json options = option_values(run.command);
@@ -426,6 +438,7 @@ Json record(const MeshRun& run) {
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };
+  if (!run.values.empty()) record["values"] = values_of(run);
   if (report.optimization) record["promises"] = promises_of(report);  // other meshes promise all claims
   return record;
 }

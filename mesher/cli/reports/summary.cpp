@@ -243,6 +243,22 @@ std::string time_text(const MeshRun& run) {
 
 }  // namespace
 
+namespace {
+
+std::string values_text(const MeshRun& run) {
+  std::string text;
+  for (const ValuesOnCells& values : run.values) {
+    text += fmt::format("values     {} of {}: means of cells {:.6g} to {:.6g}", values.name, values.path,
+                        values.report.least_mean, values.report.largest_mean);
+    if (values.report.partly_covered > 0)
+      text += fmt::format("; {} cells are covered in part", values.report.partly_covered);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string summary(const MeshRun& run) {
   const MeshingReport& report = run.report;
   const std::string& path = run.command.mesh_path;
@@ -252,7 +268,7 @@ std::string summary(const MeshRun& run) {
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
   text += labels_text(run) + smoothing_text(run) + facets_text(run) + sides_text(report) +
           quality_text(report) + perturbation_text(report) + optimization_text(report) +
-          topology_text(report) + lines_text(report);
+          topology_text(report) + lines_text(report) + values_text(run);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

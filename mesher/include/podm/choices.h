@@ -105,6 +105,15 @@ struct Names<BoxFaces> {
   static constexpr std::array kAll{std::pair{BoxFaces::kOpen, "open"}, std::pair{BoxFaces::kFlat, "flat"}};
 };
 
+/// The field of an image of values: a voxel has one value, or values are trilinear between voxel centers and,
+/// along each axis, constant from the border voxels on.
+enum class ValuesOf { kConstant, kTrilinear };
+template <>
+struct Names<ValuesOf> {
+  static constexpr std::array kAll{std::pair{ValuesOf::kConstant, "voxels"},
+                                   std::pair{ValuesOf::kTrilinear, "trilinear"}};
+};
+
 /// The operations of optimisation: replace the cells around an edge or on both sides of facets, move a
 /// vertex, fill a cavity with any cells, fill a cavity with any cells and a new vertex, and give a flat cell
 /// on an interface to another label.

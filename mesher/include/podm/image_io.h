@@ -89,8 +89,8 @@ LabelImage read_image(const std::string& path, const LabelSelection& selection =
 SizeImage read_size_image(const std::string& path,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Reads an image of values, of the same formats and any voxel type. Throws InputError that names the file and
-/// the fault: it is not 3-D, or a voxel is not a finite number.
+/// Reads an image of values, of the same formats and any voxel type. Throws InputError that names the file
+/// and the fault: it is not 3-D, or a voxel is not a finite number.
 ValueImage read_value_image(const std::string& path,
                             std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "podm/box_sides.h"
@@ -14,6 +15,12 @@
 #include "podm/topology_report.h"
 
 namespace podm {
+
+/// A number per cell, under a name.
+struct CellArray {
+  std::string name;
+  std::vector<double> values;
+};
 
 /// Every cell is positively oriented: with vertices (a,b,c,d), dot(cross(b-a, c-a), d-a) > 0.
 struct TetMesh {
@@ -40,6 +47,7 @@ struct TetMesh {
   /// If thin layers were kept, all differences of topology from the image that are left.
   std::optional<std::vector<TopologyReport::Difference>> topology_differences = {};
   MeshLines lines = {};
+  std::vector<CellArray> cell_arrays = {};  ///< values of other images (podm/cell_values.h)
 };
 
 /// The side of a flat box that a boundary facet lies on, as a set with one bit at most.

@@ -9,12 +9,6 @@
 
 namespace podm {
 
-/// What the values of an image are between voxel centers.
-enum class ValuesOf {
-  kConstant,   ///< a voxel has one value
-  kTrilinear,  ///< trilinear between voxel centers; constant, along each axis, from the border voxels on
-};
-
 struct ValueImage {
   std::string path;                       ///< for messages
   std::array<int, 3> size{};              ///< voxels per axis
