@@ -180,7 +180,7 @@ class CellIntegrals {
     return is_accurate ? std::optional(value_of(sums)) : std::nullopt;
   }
 
-  // A bound on what the roundings of corners and of cut edges change in the volumes: a shift of each facet.
+  // Bounds the change of the volumes by roundings of corners and of cut edges, as by a shift of each facet.
   template <class Real>
   static double error_of_corners(const std::array<GridPoint<Real>, 4>& corners) {
     constexpr double kRoundings = 4;

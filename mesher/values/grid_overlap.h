@@ -157,8 +157,8 @@ class GridOverlap {
   // The moments of 1, y, z and yz over a part of a facet, projected along x.
   static constexpr std::size_t kProjected = Field::kMoments == 1 ? 1 : 4;
   using Projected = std::array<Real, kProjected>;
-  // What the parts of facets in a voxel add: moments of u and u^2/2 times these fields to the voxel, where u
-  // is x above the voxel's lower face, and moments of the fields to the voxels below in x.
+  // The parts of facets in a voxel add moments of u and u^2/2 times these fields to the voxel, where u is x
+  // above its lower face, and moments of the fields to the voxels below in x.
   struct Sums {
     Projected of_u{}, of_u2{}, below{};
   };

@@ -276,8 +276,8 @@ TEST(CellValues, AMeshThatFillsTheBoxHasTheSumOfTheVoxels) {
       const bool is_border = nearest == 0 || nearest == 5;
       v[axis] = (is_border ? nearest : place) / 5 * image.size[axis] - 0.5;
     }
-  const auto of_cells =
-      values_of_cells(mesh, image, exact_affine({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}), ValuesOf::kConstant, 2);
+  const auto of_cells = values_of_cells(mesh, image, exact_affine({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}),
+                                        ValuesOf::kConstant, 2);
   double sum = 0, magnitude = 0, expected = 0;
   for (const CellValue& value : of_cells) sum += value.mean * value.covered_voxels;
   for (const float value : std::get<std::vector<float>>(image.values))
