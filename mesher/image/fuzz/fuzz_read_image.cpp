@@ -1,6 +1,7 @@
 // Any bytes under the name of any format either are an image, of labels or of sizes, or are refused with an
 // InputError that names the file.
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "fuzz_scratch.h"
@@ -24,6 +25,16 @@ void check_image(const SizeImage& image) {
   check(image.radius_mm.size() == voxels);
   for (const float radius : image.radius_mm)
     check(radius >= 0 && radius < std::numeric_limits<float>::infinity());
+}
+
+void check_image(const ValueImage& image) {
+  std::size_t voxels = 1;
+  for (const int n : image.size) voxels *= static_cast<std::size_t>(n);
+  const auto check_values = [voxels](const auto& values) {
+    check(values.size() == voxels);
+    for (const auto value : values) check(std::isfinite(value));
+  };
+  std::visit(check_values, image.values);
 }
 
 template <class Read>
